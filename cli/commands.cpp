@@ -1,0 +1,150 @@
+#include "cli/commands.h"
+
+#include "cli/terminal_progress.h"
+#include "core/error.h"
+#include "scenes/check_scene.h"
+#include "scenes/describe_file.h"
+#include "scenes/run_scene.h"
+#include "scenes/scene_reader.h"
+#include "scenes/scene_writer.h"
+#include "scenes/version.h"
+
+#include <CLI/CLI.hpp>
+#include <tbb/global_control.h>
+
+#include <cstdio>
+#include <functional>
+#include <memory>
+
+namespace smelt {
+
+namespace {
+
+/// Options that commands on a scene share.
+struct SceneOptions {
+  std::string scene;
+  std::string folder;
+  std::string frames;
+  std::vector<std::string> overrides;
+  int threads = 0;
+  bool resume = false;
+};
+
+/// oneTBB, and Embree through it, use this many threads while the object lives.
+std::unique_ptr<tbb::global_control> limit_threads(int threads) {
+  if (threads <= 0) return nullptr;
+  return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+}
+
+void print_summary(const RunSummary& s) {
+  fmt::print("folder    {}\nframes    {}-{}\n", s.folder.root.string(), s.frames.first, s.frames.last);
+  const auto stage = [](const char* name, double seconds) {
+    if (seconds > 0.0) fmt::print("{:<9} {:.1f} s\n", name, seconds);
+  };
+  stage("simulate", s.simulate_seconds);
+  stage("surface", s.surface_seconds);
+  stage("render", s.render_seconds);
+  if (s.film) fmt::print("film      {}\n", s.film->string());
+}
+
+void run_on_scene(const SceneOptions& o, const std::function<RunSummary(const Scene&, const RunOptions&, Progress&)>& work) {
+  const Scene scene = read_scene(o.scene, o.overrides);
+  const auto threads = limit_threads(o.threads);
+  RunOptions options{o.folder, std::nullopt, o.resume};
+  if (!o.frames.empty()) options.frames = parse_frame_range(o.frames, scene.shot.frames);
+  RunSummary summary;
+  {
+    TerminalProgress progress;
+    summary = work(scene, options, progress);
+  }
+  print_summary(summary);
+}
+
+void print_check(const SceneOptions& o) {
+  const Scene scene = read_scene(o.scene, o.overrides);
+  const auto threads = limit_threads(o.threads);
+  const SceneForecast f = forecast_scene(scene);
+  for (const std::string& warning : f.warnings) fmt::print(stderr, "smelt: warning: {}\n", warning);
+  fmt::print(
+      "scene       {}: {} frames at {} fps\nparticles   {}, {:.4g} m apart\nvolume      {:.6g} m3\nsound speed {:.4g} m/s\n"
+      "time step   {:.3g} s, set by the {} term\nsteps       {:.0f} at that time step\nmemory      {:.1f} MB for the simulation\n"
+      "time        {:.0f} s for the simulation, at this machine's pace now\n",
+      scene.shot.name, scene.shot.frames, scene.shot.fps, f.n_particles, f.spacing, f.body_volume, f.sound_speed, f.time_step,
+      f.time_step_term, f.n_steps, f.bytes / 1e6, f.simulate_seconds);
+}
+
+/// The option table.
+void add_scene_options(CLI::App& command, SceneOptions& o, bool makes_frames) {
+  command.add_option("scene", o.scene, "scene file (.toml)")->required();
+  command.add_option("--set", o.overrides, "set a key of the scene: key.path=value, any number of times")->take_all()->allow_extra_args(false);
+  command.add_option("--threads", o.threads, "threads to use; by default all")->check(CLI::Range(1, 4096));
+  if (!makes_frames) return;
+  command.add_option("-o,--output", o.folder, "folder for the results; by default out/<name of the shot>");
+  command.add_option("--frames", o.frames, "frames to make: A-B, A- or A");
+  command.add_flag("--resume", o.resume, "go on from what an earlier run left in the folder");
+}
+
+int run_parsed(int argc, char** argv) {
+  CLI::App app("smelt: melts, sags, oozes and flows meshes as viscoplastic fluids", "smelt");
+  app.set_version_flag("--version", std::string(version));
+  app.require_subcommand(1);
+  SceneOptions o;
+  std::string file;
+  std::function<void()> work;
+
+  const auto add = [&](const char* name, const char* what, auto&& body) {
+    CLI::App* command = app.add_subcommand(name, what);
+    command->callback([&work, body] { work = body; });
+    return command;
+  };
+  add_scene_options(*add("run", "simulate, surface and render a shot", [&] { run_on_scene(o, run_scene); }), o, true);
+  const auto add_stage = [&](const char* name, const char* what, Stage stage) {
+    auto* command = add(name, what, [&o, stage] {
+      run_on_scene(o, [stage](const Scene& s, const RunOptions& r, Progress& p) { return run_stage(s, stage, r, p); });
+    });
+    add_scene_options(*command, o, true);
+  };
+  add_stage("simulate", "particles only", Stage::simulate);
+  add_stage("surface", "surfaces of the particles in the folder", Stage::surface);
+  add_stage("render", "pictures of the surfaces in the folder", Stage::render);
+  add_scene_options(*add("check", "validate a scene and tell what it will take", [&] { print_check(o); }), o, false);
+  add("info", "what a particle cache, checkpoint, surface or mesh holds", [&] { fmt::print("{}", describe_file(file)); })
+      ->add_option("file", file, "the file")
+      ->required();
+  add("scene-reference", "print all keys of a scene file", [] { fmt::print("{}", write_scene_reference()); });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? exit_done : exit_usage;
+  }
+  work();
+  return exit_done;
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  const auto report = [](const char* kind, const std::exception& error, ExitCode code) {
+    fmt::print(stderr, "smelt: {}{}\n", kind, error.what());
+    return static_cast<int>(code);
+  };
+  try {
+    if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
+      throw Error("this machine's processor has no AVX2 and FMA instructions, which smelt needs (any x86 processor since about 2014 has)");
+    install_signal_handlers();
+    return run_parsed(argc, argv);
+  } catch (const DivergedError& error) {
+    return report("", error, exit_diverged);
+  } catch (const Interrupted& error) {
+    return report("", error, exit_interrupted);
+  } catch (const Error& error) {
+    return report("error: ", error, exit_bad_input);
+  } catch (const std::bad_alloc& error) {
+    return report("error: out of memory; fewer particles or a coarser surface would do: ", error, exit_bad_input);
+  } catch (const std::exception& error) {
+    return report("internal error (please report it): ", error, exit_internal);
+  }
+}
+
+}  // namespace smelt

@@ -1,0 +1,140 @@
+#include "core/geometry/swept_sphere.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace smelt {
+
+namespace {
+
+template <int Dim>
+Vec<Dim> closest_on_segment(const Vec<Dim>& p, const Vec<Dim>& a, const Vec<Dim>& b) {
+  const Vec<Dim> ab = b - a;
+  const double length2 = ab.squaredNorm();
+  if (length2 == 0.0) return a;
+  return a + std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) * ab;
+}
+
+/// Smallest t in [0, 1] at which |offset + t direction| = radius, coming from outside.
+template <typename Vector>
+std::optional<double> enter_ball(const Vector& offset, const Vector& direction, double radius) {
+  const double a = direction.squaredNorm();
+  const double b = offset.dot(direction);
+  const double c = offset.squaredNorm() - radius * radius;
+  if (b >= 0.0 || a == 0.0) return std::nullopt;
+  const double discriminant = b * b - a * c;
+  if (discriminant < 0.0) return std::nullopt;
+  // The stable form of the smaller root: no difference of nearly equal numbers.
+  const double t = c / (-b + std::sqrt(discriminant));
+  if (t > 1.0) return std::nullopt;
+  return std::max(t, 0.0);
+}
+
+template <int Dim>
+void keep_earlier(std::optional<SweepContact<Dim>>& best, double time, const Vec<Dim>& from_obstacle) {
+  if (best && best->time <= time) return;
+  const double length = from_obstacle.norm();
+  if (length > 0.0) best = SweepContact<Dim>{time, from_obstacle / length};
+}
+
+template <int Dim>
+void sweep_corner(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius, const Vec<Dim>& corner,
+                  std::optional<SweepContact<Dim>>& best) {
+  const Vec<Dim> offset = centre - corner;
+  if (const auto t = enter_ball(offset, displacement, radius)) keep_earlier<Dim>(best, *t, offset + *t * displacement);
+}
+
+/// The side of an edge: a cylinder in 3D, two parallel lines in 2D.
+template <int Dim>
+void sweep_edge(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius, const Vec<Dim>& a, const Vec<Dim>& b,
+                std::optional<SweepContact<Dim>>& best) {
+  const Vec<Dim> edge = b - a;
+  const double length2 = edge.squaredNorm();
+  if (length2 == 0.0) return;
+  const Vec<Dim> offset = centre - a;
+  const Vec<Dim> offset_across = offset - offset.dot(edge) / length2 * edge;
+  const Vec<Dim> displacement_across = displacement - displacement.dot(edge) / length2 * edge;
+  const auto t = enter_ball(offset_across, displacement_across, radius);
+  if (!t) return;
+  const double along = (offset + *t * displacement).dot(edge) / length2;
+  if (along >= 0.0 && along <= 1.0) keep_earlier<Dim>(best, *t, offset_across + *t * displacement_across);
+}
+
+bool inside_triangle(const Vec3& p, const Simplex<3>& t, const Vec3& normal) {
+  for (int k = 0; k < 3; ++k)
+    if ((t[(k + 1) % 3] - t[k]).cross(p - t[k]).dot(normal) < 0.0) return false;
+  return true;
+}
+
+void sweep_face(const Vec3& centre, const Vec3& displacement, double radius, const Simplex<3>& t,
+                std::optional<SweepContact<3>>& best) {
+  Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  const double length = normal.norm();
+  if (length == 0.0) return;
+  normal /= length;
+  const double distance = (centre - t[0]).dot(normal);
+  const double side = distance >= 0.0 ? 1.0 : -1.0;
+  const double approach = -side * displacement.dot(normal);
+  if (approach <= 0.0) return;
+  // A sphere that touches may come out a few roundings deep here: that is contact now, not contact missed.
+  const double gap = side * distance - radius;
+  const double time = gap < 0.0 && gap > -1e-9 * radius ? 0.0 : gap / approach;
+  if (time < 0.0 || time > 1.0) return;
+  if (inside_triangle(centre + time * displacement, t, normal)) keep_earlier<3>(best, time, side * normal);
+}
+
+}  // namespace
+
+template <>
+Vec<1> closest_point<1>(const Vec<1>&, const Simplex<1>& point) {
+  return point[0];
+}
+
+template <>
+Vec<2> closest_point<2>(const Vec<2>& p, const Simplex<2>& segment) {
+  return closest_on_segment<2>(p, segment[0], segment[1]);
+}
+
+template <>
+Vec3 closest_point<3>(const Vec3& p, const Simplex<3>& t) {
+  const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  const double area2 = normal.squaredNorm();
+  if (area2 > 0.0) {
+    const Vec3 foot = p - (p - t[0]).dot(normal) / area2 * normal;
+    if (inside_triangle(foot, t, normal)) return foot;
+  }
+  Vec3 best = closest_on_segment<3>(p, t[0], t[1]);
+  for (int k = 1; k < 3; ++k) {
+    const Vec3 candidate = closest_on_segment<3>(p, t[k], t[(k + 1) % 3]);
+    if ((candidate - p).squaredNorm() < (best - p).squaredNorm()) best = candidate;
+  }
+  return best;
+}
+
+template <int Dim>
+std::optional<SweepContact<Dim>> sweep_sphere(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius,
+                                              const Simplex<Dim>& simplex) {
+  // In contact at the start: what counts is whether it moves deeper.
+  const Vec<Dim> from_obstacle = centre - closest_point<Dim>(centre, simplex);
+  const double distance = from_obstacle.norm();
+  if (distance > 0.0 && distance <= radius) {
+    if (displacement.dot(from_obstacle) >= 0.0) return std::nullopt;
+    return SweepContact<Dim>{0.0, from_obstacle / distance};
+  }
+
+  std::optional<SweepContact<Dim>> best;
+  if constexpr (Dim == 3) sweep_face(centre, displacement, radius, simplex, best);
+  if constexpr (Dim >= 2)
+    for (int k = 0; k < (Dim == 3 ? 3 : 1); ++k)
+      sweep_edge<Dim>(centre, displacement, radius, simplex[k], simplex[(k + 1) % Dim], best);
+  for (const Vec<Dim>& corner : simplex) sweep_corner<Dim>(centre, displacement, radius, corner, best);
+  return best;
+}
+
+template std::optional<SweepContact<1>> sweep_sphere<1>(const Vec<1>&, const Vec<1>&, double, const Simplex<1>&);
+template std::optional<SweepContact<2>> sweep_sphere<2>(const Vec<2>&, const Vec<2>&, double, const Simplex<2>&);
+template std::optional<SweepContact<3>> sweep_sphere<3>(const Vec<3>&, const Vec<3>&, double, const Simplex<3>&);
+
+}  // namespace smelt

@@ -1,0 +1,301 @@
+// The pair loops for one instruction set; included once per target by pair_sums.cpp.
+#if defined(SMELT_PAIR_SUMS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SMELT_PAIR_SUMS_INL_H
+#undef SMELT_PAIR_SUMS_INL_H
+#else
+#define SMELT_PAIR_SUMS_INL_H
+#endif
+
+#include "core/sph/kernel.h"
+#include "core/sph/pair_sums.h"
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace smelt {
+namespace HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <typename Real>
+using Tag = hn::CappedTag<Real, pair_lanes<Real>>;
+template <typename Real>
+using Simd = hn::Vec<Tag<Real>>;
+
+/// Turns four vectors of rows (in blocks of four lanes) into four vectors of columns.
+HWY_INLINE void transpose_blocks(Simd<float> (&rows)[4]) {
+  const Tag<float> d;
+  const hn::Repartition<double, Tag<float>> wide;
+  const auto pairs01_low = hn::BitCast(wide, hn::InterleaveLower(d, rows[0], rows[1]));
+  const auto pairs23_low = hn::BitCast(wide, hn::InterleaveLower(d, rows[2], rows[3]));
+  const auto pairs01_high = hn::BitCast(wide, hn::InterleaveUpper(d, rows[0], rows[1]));
+  const auto pairs23_high = hn::BitCast(wide, hn::InterleaveUpper(d, rows[2], rows[3]));
+  rows[0] = hn::BitCast(d, hn::InterleaveLower(wide, pairs01_low, pairs23_low));
+  rows[1] = hn::BitCast(d, hn::InterleaveUpper(wide, pairs01_low, pairs23_low));
+  rows[2] = hn::BitCast(d, hn::InterleaveLower(wide, pairs01_high, pairs23_high));
+  rows[3] = hn::BitCast(d, hn::InterleaveUpper(wide, pairs01_high, pairs23_high));
+}
+
+/// Loads the first n_fields of the records of one vector of neighbours: fields[f] holds field f of each.
+template <int n_fields, int stride>
+HWY_INLINE void load_records(const float* records, const std::int32_t* index, Simd<float> (&fields)[padded_record(n_fields)]) {
+  static_assert(pair_lanes<float> == 8);
+  const Tag<float> d;
+  const hn::Half<Tag<float>> half;
+  const float* at[8];
+  for (int lane = 0; lane < 8; ++lane) at[lane] = records + static_cast<std::size_t>(index[lane]) * stride;
+  for (int group = 0; group < padded_record(n_fields); group += 4) {
+    Simd<float> rows[4];
+    for (int k = 0; k < 4; ++k)
+      rows[k] = hn::Combine(d, hn::LoadU(half, at[k + 4] + group), hn::LoadU(half, at[k] + group));
+    transpose_blocks(rows);
+    for (int k = 0; k < 4; ++k) fields[group + k] = rows[k];
+  }
+}
+
+/// Double precision serves studies, not speed: plain gathers.
+template <int n_fields, int stride>
+HWY_INLINE void load_records(const double* records, const std::int32_t* index,
+                             Simd<double> (&fields)[padded_record(n_fields)]) {
+  const Tag<double> d;
+  const Tag<std::int64_t> di;
+  const auto indices = hn::PromoteTo(di, hn::LoadU(hn::Rebind<std::int32_t, decltype(di)>(), index));
+  const auto offsets = hn::Mul(indices, hn::Set(di, stride));
+  for (int f = 0; f < n_fields; ++f) fields[f] = hn::GatherIndex(d, records + f, offsets);
+}
+
+/// One scalar field of a vector of neighbours.
+template <typename Real>
+HWY_INLINE Simd<Real> load_scalar(const std::vector<Real>& field, const std::int32_t* index) {
+  alignas(32) Real lanes[pair_lanes<Real>];
+  for (int lane = 0; lane < pair_lanes<Real>; ++lane) lanes[lane] = field[static_cast<std::size_t>(index[lane])];
+  return hn::Load(Tag<Real>(), lanes);
+}
+
+template <typename Real>
+HWY_INLINE Real sum_lanes(Simd<Real> v) {
+  return hn::GetLane(hn::SumOfLanes(Tag<Real>(), v));
+}
+
+/// The cubic spline with its constants folded.
+template <int Dim, typename Real>
+struct CubicSpline {
+  Real inverse_h;
+  Real value_scale;     ///< sigma
+  Real gradient_scale;  ///< sigma / h^2
+
+  explicit CubicSpline(double h)
+      : inverse_h(static_cast<Real>(1.0 / h)),
+        value_scale(static_cast<Real>(Kernel<Dim>(h).value(0.0))),
+        gradient_scale(static_cast<Real>(Kernel<Dim>(h).value(0.0) / (h * h))) {
+    // f(0) = 1 for the cubic spline: 0.25 * 2^3 - 1.
+  }
+
+  /// F = (dW/dr)/r from r^2; 0 beyond 2h, finite at r = 0.
+  HWY_INLINE Simd<Real> gradient_over_r(Simd<Real> r2) const {
+    const Tag<Real> d;
+    const auto q = hn::Mul(hn::Sqrt(r2), hn::Set(d, inverse_h));
+    const auto near_branch = hn::MulAdd(q, hn::Set(d, Real(2.25)), hn::Set(d, Real(-3)));
+    const auto a = hn::Max(hn::Sub(hn::Set(d, Real(2)), q), hn::Zero(d));
+    const auto far_branch = hn::Div(hn::Mul(hn::Mul(a, a), hn::Set(d, Real(-0.75))), q);
+    return hn::Mul(hn::Set(d, gradient_scale), hn::IfThenElse(hn::Lt(q, hn::Set(d, Real(1))), near_branch, far_branch));
+  }
+
+  /// W from r^2.
+  HWY_INLINE Simd<Real> value(Simd<Real> r2) const {
+    const Tag<Real> d;
+    const auto q = hn::Mul(hn::Sqrt(r2), hn::Set(d, inverse_h));
+    const auto a = hn::Max(hn::Sub(hn::Set(d, Real(2)), q), hn::Zero(d));
+    const auto b = hn::Max(hn::Sub(hn::Set(d, Real(1)), q), hn::Zero(d));
+    const auto a3 = hn::Mul(a, hn::Mul(a, a));
+    const auto b3 = hn::Mul(b, hn::Mul(b, b));
+    return hn::Mul(hn::Set(d, value_scale), hn::MulSub(a3, hn::Set(d, Real(0.25)), b3));
+  }
+};
+
+/// What every pair needs of its neighbours.
+template <int Dim, typename Real>
+struct Neighbours {
+  Simd<Real> x_ij[Dim], v_ij[Dim], volume, density;
+
+  HWY_INLINE Neighbours(const Real* motion_i, const Real* motion, const std::int32_t* index) {
+    using Fields = PairFields<Dim, Real>;
+    const Tag<Real> d;
+    Simd<Real> fields[Fields::motion_stride];
+    load_records<2 * Dim + 2, Fields::motion_stride>(motion, index, fields);
+    for (int a = 0; a < Dim; ++a) x_ij[a] = hn::Sub(hn::Set(d, motion_i[a]), fields[a]);
+    for (int a = 0; a < Dim; ++a)
+      v_ij[a] = hn::Sub(hn::Set(d, motion_i[Fields::velocity_at + a]), fields[Fields::velocity_at + a]);
+    volume = fields[Fields::volume_at];
+    density = fields[Fields::density_at];
+  }
+};
+
+template <int Dim, typename Real>
+HWY_INLINE Simd<Real> dot(const Simd<Real> (&a)[Dim], const Simd<Real> (&b)[Dim]) {
+  auto sum = hn::Mul(a[0], b[0]);
+  for (int k = 1; k < Dim; ++k) sum = hn::MulAdd(a[k], b[k], sum);
+  return sum;
+}
+
+template <int Dim, typename Real, bool with_stress, bool with_heat, bool with_xsph>
+void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, double h, std::size_t begin,
+               std::size_t end, RateSums<Dim, Real>* sums) {
+  const Tag<Real> d;
+  const CubicSpline<Dim, Real> kernel(h);
+  constexpr std::size_t lanes = pair_lanes<Real>;
+  using Fields = PairFields<Dim, Real>;
+  const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
+  for (std::size_t i = begin; i < end; ++i) {
+    auto density_rate = hn::Zero(d);
+    auto heat = hn::Zero(d);
+    Simd<Real> velocity_moment[Dim * Dim];
+    Simd<Real> position_moment[Dim * (Dim + 1) / 2];
+    Simd<Real> xsph[Dim];
+    for (auto& m : velocity_moment) m = hn::Zero(d);
+    for (auto& m : position_moment) m = hn::Zero(d);
+    for (auto& x : xsph) x = hn::Zero(d);
+
+    const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
+    const auto density_i = hn::Set(d, motion_i[Fields::density_at]);
+    const std::int32_t* row = lists.index.data() + lists.begin[i];
+    const std::size_t n = lists.padded[i];
+    for (std::size_t k = 0; k < n; k += lanes) {
+      const Neighbours<Dim, Real> pair(motion_i, fields.motion.data(), row + k);
+      const auto &x_ij = pair.x_ij, &v_ij = pair.v_ij;
+      const auto r2 = dot<Dim, Real>(x_ij, x_ij);
+      const auto f = kernel.gradient_over_r(r2);
+      const auto volume_f = hn::Mul(pair.volume, f);
+      density_rate = hn::MulAdd(hn::Mul(pair.density, volume_f), dot<Dim, Real>(v_ij, x_ij), density_rate);
+      if constexpr (with_stress) {
+        // v_j - v_i = -v_ij and x_j - x_i = -x_ij: one sign for all.
+        for (int b = 0; b < Dim; ++b) {
+          const auto weighted = hn::Mul(volume_f, x_ij[b]);
+          for (int a = 0; a < Dim; ++a)
+            velocity_moment[a * Dim + b] = hn::NegMulAdd(v_ij[a], weighted, velocity_moment[a * Dim + b]);
+          for (int a = 0; a <= b; ++a) {
+            auto& moment = position_moment[a == b ? a : Dim - 1 + a + b];
+            moment = hn::NegMulAdd(x_ij[a], weighted, moment);
+          }
+        }
+      }
+      if constexpr (with_heat) {
+        const auto t_ij = hn::Sub(hn::Set(d, fields.temperature[i]), load_scalar(fields.temperature, row + k));
+        heat = hn::MulAdd(hn::Mul(volume_f, t_ij), hn::Div(r2, hn::Add(r2, soft)), heat);
+      }
+      if constexpr (with_xsph) {
+        const auto mass = hn::Mul(pair.volume, pair.density);
+        const auto w = hn::Div(hn::Mul(mass, kernel.value(r2)), hn::Add(density_i, pair.density));
+        for (int a = 0; a < Dim; ++a) xsph[a] = hn::NegMulAdd(v_ij[a], w, xsph[a]);
+      }
+    }
+
+    RateSums<Dim, Real>& out = sums[i];
+    out.density_rate = sum_lanes<Real>(density_rate);
+    if constexpr (with_stress) {
+      for (int a = 0; a < Dim * Dim; ++a) out.velocity_moment[a] = sum_lanes<Real>(velocity_moment[a]);
+      for (int a = 0; a < Dim * (Dim + 1) / 2; ++a) out.position_moment[a] = sum_lanes<Real>(position_moment[a]);
+    }
+    if constexpr (with_heat) out.heat = 2 * sum_lanes<Real>(heat);
+    if constexpr (with_xsph)
+      for (int a = 0; a < Dim; ++a) out.xsph[a] = 2 * sum_lanes<Real>(xsph[a]);
+  }
+}
+
+template <int Dim, typename Real, bool with_stress>
+void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const ForceParameters& parameters,
+                std::size_t begin, std::size_t end, std::array<Real, Dim>* acceleration) {
+  const Tag<Real> d;
+  const double h = parameters.smoothing_length;
+  const CubicSpline<Dim, Real> kernel(h);
+  constexpr std::size_t lanes = pair_lanes<Real>;
+  using Fields = PairFields<Dim, Real>;
+  constexpr int force_stride = Fields::force_stride(with_stress);
+  const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
+  // Pi_ij = -alpha c mu_ij / (0.5 (rho_i + rho_j)), mu_ij = h v_ij.x_ij / (r^2 + 0.01 h^2) where they approach.
+  const auto damping = hn::Set(d, static_cast<Real>(2.0 * parameters.artificial_viscosity * parameters.sound_speed * h));
+  for (std::size_t i = begin; i < end; ++i) {
+    Simd<Real> sum[Dim];
+    for (auto& s : sum) s = hn::Zero(d);
+    const Real* force_i = fields.force.data() + i * force_stride;
+    const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
+    const auto density_i = hn::Set(d, motion_i[Fields::density_at]);
+    const auto inverse_density_i = hn::Set(d, 1 / motion_i[Fields::density_at]);
+    const std::int32_t* row = lists.index.data() + lists.begin[i];
+    const std::size_t n = lists.padded[i];
+    for (std::size_t k = 0; k < n; k += lanes) {
+      const Neighbours<Dim, Real> pair(motion_i, fields.motion.data(), row + k);
+      const auto &x_ij = pair.x_ij, &v_ij = pair.v_ij;
+      Simd<Real> force[force_stride];
+      load_records<with_stress ? 1 + Dim * Dim : 1, force_stride>(fields.force.data(), row + k, force);
+      const auto r2 = dot<Dim, Real>(x_ij, x_ij);
+      const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(r2));
+      const auto approach = hn::Min(dot<Dim, Real>(v_ij, x_ij), hn::Zero(d));
+      const auto pi = hn::Div(hn::Mul(damping, approach), hn::Mul(hn::Add(r2, soft), hn::Add(density_i, pair.density)));
+      const auto pressure = hn::Add(hn::Set(d, force_i[0]), force[0]);
+      // -m_j (pressure + Pi_ij) F, with Pi_ij = -pi and m_j = V_j rho_j.
+      const auto isotropic = hn::Mul(hn::Mul(pair.density, volume_f), hn::Sub(pi, pressure));
+      for (int a = 0; a < Dim; ++a) sum[a] = hn::MulAdd(isotropic, x_ij[a], sum[a]);
+      if constexpr (with_stress) {
+        // m_j/(rho_i rho_j) = V_j/rho_i.
+        const auto scale = hn::Mul(volume_f, inverse_density_i);
+        for (int a = 0; a < Dim; ++a) {
+          auto traction = hn::Zero(d);
+          for (int b = 0; b < Dim; ++b) {
+            const int component = 1 + a * Dim + b;
+            traction = hn::MulAdd(hn::Add(hn::Set(d, force_i[component]), force[component]), x_ij[b], traction);
+          }
+          sum[a] = hn::MulAdd(scale, traction, sum[a]);
+        }
+      }
+    }
+    for (int a = 0; a < Dim; ++a) acceleration[i][a] = sum_lanes<Real>(sum[a]);
+  }
+}
+
+/// Picks the loop compiled for just the terms in use.
+template <int Dim, typename Real>
+void select_rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms, double h,
+                      std::size_t begin, std::size_t end, RateSums<Dim, Real>* sums) {
+  const auto run = [&](auto stress, auto heat, auto xsph) HWY_ATTR {
+    rate_sums<Dim, Real, stress.value, heat.value, xsph.value>(fields, lists, h, begin, end, sums);
+  };
+  const auto with_xsph = [&](auto stress, auto heat) HWY_ATTR {
+    terms.xsph ? run(stress, heat, std::true_type{}) : run(stress, heat, std::false_type{});
+  };
+  const auto with_heat = [&](auto stress) HWY_ATTR {
+    terms.heat ? with_xsph(stress, std::true_type{}) : with_xsph(stress, std::false_type{});
+  };
+  terms.stress ? with_heat(std::true_type{}) : with_heat(std::false_type{});
+}
+
+template <int Dim, typename Real>
+void select_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,
+                       const ForceParameters& parameters, std::size_t begin, std::size_t end,
+                       std::array<Real, Dim>* acceleration) {
+  terms.stress ? force_sums<Dim, Real, true>(fields, lists, parameters, begin, end, acceleration)
+               : force_sums<Dim, Real, false>(fields, lists, parameters, begin, end, acceleration);
+}
+
+#define SMELT_INSTANTIATE(Dim, Real, suffix)                                                                           \
+  inline void rate_sums_##suffix(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,                     \
+                                 const PairTerms& terms, double h, std::size_t begin, std::size_t end,                 \
+                                 RateSums<Dim, Real>* sums) {                                                          \
+    select_rate_sums<Dim, Real>(fields, lists, terms, h, begin, end, sums);                                            \
+  }                                                                                                                    \
+  inline void force_sums_##suffix(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,                    \
+                                  const PairTerms& terms, const ForceParameters& parameters, std::size_t begin,        \
+                                  std::size_t end, std::array<Real, Dim>* acceleration) {                              \
+    select_force_sums<Dim, Real>(fields, lists, terms, parameters, begin, end, acceleration);                          \
+  }
+SMELT_INSTANTIATE(3, float, 3f)
+SMELT_INSTANTIATE(3, double, 3d)
+SMELT_INSTANTIATE(2, double, 2d)
+SMELT_INSTANTIATE(1, double, 1d)
+#undef SMELT_INSTANTIATE
+
+}  // namespace HWY_NAMESPACE
+}  // namespace smelt
+HWY_AFTER_NAMESPACE();
+
+#endif  // SMELT_PAIR_SUMS_INL_H

@@ -1,0 +1,78 @@
+#pragma once
+// The two passes over neighbour pairs, vectorised. Everything else in a step is per particle.
+//
+// Symbols: x_ij = x_i - x_j, v_ij = v_i - v_j, V_j = m_j/rho_j, W the cubic spline, F = (dW/dr)/r, so grad_w_ij = F x_ij.
+// Each pair is evaluated from both of its particles (no scattered writes), so results do not depend on threads.
+
+#include "core/sph/neighbours.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace smelt {
+
+/// What a scene asks of the pair loops; an unused term costs neither time nor memory.
+struct PairTerms {
+  bool stress = false;
+  bool heat = false;
+  bool xsph = false;
+};
+
+/// Fields of a record, padded to whole groups of four: a vector of neighbours is loaded group by group and transposed, which costs
+/// a fraction of gathering field by field (docs/decisions/0006-pair-loops.md).
+constexpr int padded_record(int n_fields) { return (n_fields + 3) / 4 * 4; }
+
+/// The particles' fields as the pair loops read them, in the order of the neighbour lists. Positions are relative to an origin near
+/// the particles, so that Real may be float. Arrays that PairTerms leaves out stay empty.
+template <int Dim, typename Real>
+struct PairFields {
+  /// Position [m], velocity [m/s], volume V [m^Dim], density rho [kg/m^Dim].
+  static constexpr int motion_stride = padded_record(2 * Dim + 2);
+  static constexpr int velocity_at = Dim, volume_at = 2 * Dim, density_at = 2 * Dim + 1;
+  /// p/rho^2, then S L row-major [Pa] where the scene has a stress.
+  static constexpr int force_stride(bool with_stress) { return padded_record(with_stress ? 1 + Dim * Dim : 1); }
+
+  std::vector<Real> motion;       ///< n records of motion_stride
+  std::vector<Real> force;        ///< n records of force_stride
+  std::vector<Real> temperature;  ///< [K] above a reference
+};
+
+/// Sums of the first pass for one particle.
+template <int Dim, typename Real>
+struct RateSums {
+  Real density_rate;                            ///< sum m_j v_ij . grad_w_ij  [P 4-37]
+  std::array<Real, Dim * Dim> velocity_moment;  ///< sum V_j (v_j - v_i) (x) grad_w_ij, row-major (bare velocity gradient)
+  std::array<Real, Dim*(Dim + 1) / 2> position_moment;  ///< sum V_j (x_j - x_i) (x) grad_w_ij  [Bonet & Lok 1999]
+  Real heat;                                    ///< 2 sum V_j (T_i - T_j) x_ij.grad_w_ij / (r^2 + 0.01 h^2)  [P 6-9, corrected]
+  std::array<Real, Dim> xsph;                   ///< sum 2 m_j/(rho_i + rho_j) (v_j - v_i) W_ij  [P 6-16]
+};
+
+/// Neighbours in one vector: rows of the neighbour lists are padded to a multiple of it. The same on every machine.
+template <typename Real>
+inline constexpr int pair_lanes = 32 / static_cast<int>(sizeof(Real));
+
+/// First pass for particles [begin, end): rates of density, velocity gradient, heat and XSPH from `fields.velocity`.
+/// `smoothing_length` in metres. `sums` has one entry per particle.
+template <int Dim, typename Real>
+void compute_rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,
+                       double smoothing_length, std::size_t begin, std::size_t end, RateSums<Dim, Real>* sums);
+
+/// Strength of the pairwise forces.
+struct ForceParameters {
+  double smoothing_length = 0.0;      ///< h [m]
+  double artificial_viscosity = 0.0;  ///< alpha [-]
+  double sound_speed = 0.0;           ///< c [m/s]
+};
+
+/// Second pass for particles [begin, end): the accelerations [m/s^2]
+///   - sum m_j (p_i/rho_i^2 + p_j/rho_j^2 + Pi_ij) grad_w_ij + sum m_j/(rho_i rho_j) (S_i L_i + S_j L_j) grad_w_ij
+/// of [P 4-38, 4-46, 6-14 corrected: Pi_ij already divides by a density], with Pi_ij of [P 6-15]. L is the inverse of the position
+/// moment: with it the force is the adjoint of the corrected gradient, so it does no work on a rigid motion and conserves
+/// linear and angular momentum [Bonet & Lok 1999].
+template <int Dim, typename Real>
+void compute_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,
+                        const ForceParameters& parameters, std::size_t begin, std::size_t end,
+                        std::array<Real, Dim>* acceleration);
+
+}  // namespace smelt

@@ -1,0 +1,97 @@
+#include "core/sph/rheology.h"
+
+#include "core/error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace smelt {
+
+namespace {
+
+/// gdot^n, with the square root that most viscoplastic scenes use ([P 6.1]: n = 1/2) kept fast.
+double power(double shear_rate, double index) {
+  if (index == 1.0) return shear_rate;
+  if (index == 0.5) return std::sqrt(shear_rate);
+  if (index == 2.0) return shear_rate * shear_rate;
+  return std::pow(shear_rate, index);
+}
+
+struct StressAndSlope {
+  double stress;
+  double slope;
+};
+
+/// tau(y) and d tau/dy for y > 0.
+StressAndSlope shear_stress_and_slope(const FlowCurve& curve, double y) {
+  const double viscous = curve.consistency * power(y, curve.index);
+  const double plastic = curve.yield_stress + viscous;
+  const double viscous_slope = curve.index * viscous / y;
+  if (curve.yield_stress == 0.0) return {viscous, viscous_slope};
+  const double a = curve.rest_viscosity / curve.yield_stress;
+  const double rise = -std::expm1(-a * y);
+  return {rise * plastic, rise * viscous_slope + a * (1.0 - rise) * plastic};
+}
+
+}  // namespace
+
+double melted_fraction(const HeatProperties& heat, double temperature) {
+  return std::clamp((temperature - heat.cold) / (heat.hot - heat.cold), 0.0, 1.0);
+}
+
+FlowCurve flow_curve_at(const Rheology& rheology, double u) {
+  FlowCurve curve;
+  curve.yield_stress = rheology.yield_stress.at(u);
+  curve.consistency = rheology.consistency.at(u);
+  curve.index = rheology.index;
+  if (curve.yield_stress == 0.0) {
+    curve.rest_viscosity = curve.index == 1.0 ? curve.consistency : std::numeric_limits<double>::infinity();
+  } else if (rheology.rest_viscosity) {
+    curve.rest_viscosity = rheology.rest_viscosity->at(u);
+  } else {
+    CHECK(rheology.jump_number.has_value());
+    const double gdot1 = power(curve.yield_stress / curve.consistency, 1.0 / curve.index);
+    curve.rest_viscosity = (rheology.jump_number->at(u) + 1.0) * curve.yield_stress / gdot1;
+  }
+  return curve;
+}
+
+double shear_stress(const FlowCurve& curve, double shear_rate) {
+  return shear_rate > 0.0 ? shear_stress_and_slope(curve, shear_rate).stress : 0.0;
+}
+
+double viscosity(const FlowCurve& curve, double shear_rate) {
+  // Below this rate tau/gdot loses digits and eta differs from eta0 by less than they are worth.
+  const double a = curve.yield_stress > 0.0 ? curve.rest_viscosity / curve.yield_stress : 0.0;
+  if (shear_rate <= 0.0 || a * shear_rate < 1e-12) {
+    if (curve.yield_stress > 0.0 || shear_rate <= 0.0) return curve.rest_viscosity;
+  }
+  return shear_stress(curve, shear_rate) / shear_rate;
+}
+
+double relaxed_shear_rate(const FlowCurve& curve, double modulus_dt, double trial_stress, double guess) {
+  if (trial_stress <= 0.0) return 0.0;
+  // tau >= 0 bounds the root from above by the rate at which the spring alone would unload.
+  double lower = 0.0;
+  double upper = trial_stress / modulus_dt;
+  double y = guess > lower && guess < upper ? guess : std::min(upper, trial_stress / (modulus_dt + curve.rest_viscosity));
+  if (!(y > 0.0)) y = 0.5 * upper;
+  const double tolerance = 1e-10 * trial_stress;
+  for (int iteration = 0; iteration < 200; ++iteration) {
+    const auto [stress, slope] = shear_stress_and_slope(curve, y);
+    const double residual = stress + modulus_dt * y - trial_stress;
+    if (std::abs(residual) <= tolerance) return y;
+    (residual > 0.0 ? upper : lower) = y;
+    const double newton = y - residual / (slope + modulus_dt);
+    // The knee at the yield stress throws Newton far off now and then: bisect, in the logarithm once there is a scale.
+    const double middle = lower > 0.0 ? std::sqrt(lower * upper) : 0.1 * upper;
+    y = newton > lower && newton < upper && (iteration < 12 || iteration % 2 == 0) ? newton : middle;
+    if (upper - lower <= 1e-15 * upper) return y;
+  }
+  throw InternalError(fmt::format("relaxed_shear_rate: no root for trial stress {} Pa, G dt {} Pa s, tau0 {}, K {}, n {}, eta0 {}",
+                                  trial_stress, modulus_dt, curve.yield_stress, curve.consistency, curve.index,
+                                  curve.rest_viscosity));
+}
+
+}  // namespace smelt

@@ -1,0 +1,34 @@
+#pragma once
+// The Souza Mendes-Dutra flow curve and its use in a relaxed (Maxwell) stress.
+
+#include "core/sph/material.h"
+
+namespace smelt {
+
+/// The SMD law at one temperature.
+struct FlowCurve {
+  double yield_stress = 0.0;    ///< tau0 [Pa]
+  double consistency = 1.0;     ///< K [Pa s^n]
+  double index = 1.0;           ///< n
+  double rest_viscosity = 0.0;  ///< eta0 [Pa s]; infinite where tau0 = 0 and n < 1
+};
+
+/// u of [P 6-3], clamped to [0, 1]: outside its range the text's line would extrapolate to a negative J.
+double melted_fraction(const HeatProperties& heat, double temperature);
+
+/// The law's parameters at melted fraction `u`; eta0 from J where J is given.
+FlowCurve flow_curve_at(const Rheology& rheology, double u);
+
+/// tau(gdot) = eta(gdot) gdot [Pa] for gdot >= 0 [1/s].
+double shear_stress(const FlowCurve& curve, double shear_rate);
+
+/// eta(gdot) [Pa s]; tends to eta0 as gdot -> 0, without a division by zero.
+double viscosity(const FlowCurve& curve, double shear_rate);
+
+/// Backward-Euler relaxation of a Maxwell element whose dashpot follows the flow curve: the shear rate y >= 0 of the dashpot with
+///   tau(y) + modulus_dt y = trial_stress,
+/// where modulus_dt = G dt [Pa s]. Unique, as tau grows with y. `guess` [1/s] is where the search starts; it changes the
+/// result by rounding only. Solved to 1e-10 of trial_stress.
+double relaxed_shear_rate(const FlowCurve& curve, double modulus_dt, double trial_stress, double guess);
+
+}  // namespace smelt

@@ -1,0 +1,95 @@
+#pragma once
+// The viscoplastic SPH solver  [P Algorithm 3, with the corrections of docs/references.md].
+
+#include "core/sph/collision.h"
+#include "core/sph/material.h"
+#include "core/sph/pair_sums.h"
+#include "core/sph/particles.h"
+#include "core/sph/time_step.h"
+
+#include <limits>
+#include <vector>
+
+namespace smelt {
+
+template <int Dim>
+struct SolverParameters {
+  double particle_volume = 0.0;     ///< at rest [m^Dim]; a particle's mass is its material's density times this
+  double smoothing_length = 0.0;    ///< h [m]
+  Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
+  double sound_speed = 0.0;         ///< c [m/s], of the linear equation of state p = c^2 (rho - rho0)
+  double shear_wave_speed = 0.0;    ///< sqrt(G/rho0) of the relaxed stress [m/s]; 0: stress follows the strain rate at once
+  double artificial_viscosity = 0.0;  ///< alpha of [P 6-15]
+  double xsph = 0.0;                ///< epsilon of [P 6-16]
+  double courant = 0.25;            ///< C of the time step
+  double min_time_step = 1e-9;      ///< [s]; a smaller one is an error, not a slower simulation
+  Box<Dim> domain;                  ///< a particle that leaves it has escaped: an error; empty box: no such check
+  double skin = 0.08;               ///< reach of the neighbour lists beyond the support, in smoothing lengths
+};
+
+/// The term switches and constants that follow from parameters and materials.
+struct SolverTerms {
+  PairTerms pair;
+  bool relaxed = false;  ///< the stress is relaxed, with the shear wave speed as its stiffness
+};
+
+/// Advances particles in time by leap-frog (kick-drift-kick). Real (float or double) is what the pair loops compute in; the state is
+/// double. Results do not depend on the number of threads.
+template <int Dim, typename Real>
+class Solver {
+ public:
+  /// Throws Error where the parameters cannot be (non-positive lengths or densities).
+  Solver(const SolverParameters<Dim>& parameters, std::vector<Material> materials, Colliders<Dim> colliders,
+         Particles<Dim> particles);
+
+  /// The state, in the order of the last neighbour search.
+  const Particles<Dim>& particles() const { return particles_; }
+  const std::vector<Vec<Dim>>& acceleration() const { return acceleration_; }  ///< [m/s^2], same order
+  const NeighbourLists& neighbours() const { return lists_; }
+  const SolverParameters<Dim>& parameters() const { return parameters_; }
+  const std::vector<Material>& materials() const { return materials_; }
+  double mass(std::size_t i) const { return material(i).density * parameters_.particle_volume; }  ///< [kg]
+  const Material& material(std::size_t i) const {
+    return materials_[particles_.material.empty() ? 0 : particles_.material[i]];
+  }
+
+  /// Sorts, searches and evaluates the forces anew from the state alone. Called at the start of every frame, so that a run resumed
+  /// from a stored state goes on in the same bytes as one that never stopped.
+  void prepare();
+
+  /// One step of at most `remaining` [s]. `time` [s] only serves messages. Throws DivergedError with the particle, the term and
+  /// the time when a value is not finite, a density is beyond reason, a particle leaves the domain, or the time step collapses.
+  TimeStep step(double remaining, double time);
+
+ private:
+  void search_neighbours();
+  void pack_motion(const std::vector<Vec<Dim>>& velocity);
+  void evaluate_rates();
+  void integrate_rates(double dt);
+  Mat<Dim> integrate_stress(std::size_t i, double dt);
+  void pack_forces(std::size_t i, const Mat<Dim>& corrected_stress);
+  void evaluate_forces();
+  void kick(double dt);
+  void drift(double dt);
+  TimeStepInput time_step_input() const;
+  void check_state(double time) const;
+
+  SolverParameters<Dim> parameters_;
+  std::vector<Material> materials_;
+  Colliders<Dim> colliders_;
+  Particles<Dim> particles_;
+  SolverTerms terms_;
+
+  // Derived from the state.
+  NeighbourLists lists_;
+  PairFields<Dim, Real> fields_;
+  Vec<Dim> origin_ = Vec<Dim>::Zero();
+  double travelled_ = std::numeric_limits<double>::infinity();  ///< farthest way of any particle since the last search [m]
+  std::vector<RateSums<Dim, Real>> rates_;
+  std::vector<std::array<Real, Dim>> force_sums_;
+  std::vector<Vec<Dim>> acceleration_;
+  std::vector<Vec<Dim>> transport_;  ///< velocity that particles move with: XSPH's where it is on, else empty
+  std::vector<Vec<Dim>> xsph_;       ///< correction at the last rate evaluation, or empty
+};
+
+}  // namespace smelt

@@ -1,0 +1,27 @@
+#pragma once
+// A file appears whole or not at all: write beside it, check, then rename.
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace smelt {
+
+/// Writes `bytes` to `path` through `path`.tmp: every write is checked, the file flushed to the disk and then renamed,
+/// so that a reader, a crash or a full disk never meets half a file. On failure the temporary is removed, an older file
+/// under `path` is left as it was, and an Error names the path, the reason and what to do.
+void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
+
+/// The same for libraries that want a file name: `write` fills the temporary file whose path it is given and throws
+/// where it cannot. Its exceptions go to the caller after the temporary is removed.
+void write_file_atomically(const std::filesystem::path& path,
+                           const std::function<void(const std::filesystem::path& temporary)>& write);
+
+/// Makes `folder` and its parents; no-op where it exists. Throws Error where it cannot, or where a file is in the way.
+void create_directories_or_fail(const std::filesystem::path& folder);
+
+/// The whole of a file. Throws Error where it is missing, a folder, or cannot be read.
+std::string read_file(const std::filesystem::path& path);
+
+}  // namespace smelt

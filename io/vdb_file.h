@@ -1,0 +1,20 @@
+#pragma once
+// OpenVDB files as smelt writes them: whole, and the same bytes for the same content. Includes OpenVDB (slow to
+// compile): for the .cpp files of io only.
+
+#include <openvdb/Grid.h>
+
+#include <filesystem>
+
+namespace smelt {
+
+/// Writes `grids` to `path` and reads them back before the file takes its name, so that a full disk or a failing one is
+/// an Error and never a truncated file. OpenVDB stamps a random UUID into each file; here it is a hash of the other
+/// bytes, so equal content gives equal bytes. Throws Error with the path.
+void write_vdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& grids);
+
+/// All grids of a file, read completely. Throws Error with the path where it is missing, is not an OpenVDB file or is
+/// damaged.
+openvdb::GridPtrVec read_vdb(const std::filesystem::path& path);
+
+}  // namespace smelt

@@ -1,0 +1,125 @@
+#include "render/embree_scene.h"
+
+#include "core/error.h"
+
+#include <embree3/rtcore.h>
+
+namespace smelt {
+
+struct EmbreeScene::Handles {
+  RTCDevice device = nullptr;
+  RTCScene scene = nullptr;
+  int n_meshes = 0;
+
+  void check(const char* doing) const {
+    const RTCError error = rtcGetDeviceError(device);
+    if (error == RTC_ERROR_NONE) return;
+    if (error == RTC_ERROR_OUT_OF_MEMORY)
+      fail("render: out of memory while {}; use a coarser surface or smaller picture", doing);
+    throw InternalError(fmt::format("render: Embree error {} while {}", static_cast<int>(error), doing));
+  }
+};
+
+EmbreeScene::EmbreeScene() : handles_(std::make_unique<Handles>()) {
+  // One thread builds the hierarchy: two could order its leaves differently from run to run, and so the pictures.
+  handles_->device = rtcNewDevice("threads=1");
+  handles_->check("opening the ray tracer");
+  handles_->scene = rtcNewScene(handles_->device);
+  // Robust: no ray may slip through the seam of two triangles.
+  rtcSetSceneFlags(handles_->scene, RTC_SCENE_FLAG_ROBUST);
+}
+
+EmbreeScene::~EmbreeScene() {
+  if (handles_->scene != nullptr) rtcReleaseScene(handles_->scene);
+  if (handles_->device != nullptr) rtcReleaseDevice(handles_->device);
+}
+
+int EmbreeScene::add_mesh(const TriangleMesh& mesh, const Vec3& origin) {
+  const int number = handles_->n_meshes++;
+  if (mesh.triangles.empty()) return number;
+  RTCGeometry geometry = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                               3 * sizeof(float), mesh.vertices.size()));
+  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
+  handles_->check("copying a mesh");
+  for (const Vec3& vertex : mesh.vertices) {
+    for (int i = 0; i < 3; ++i) *vertices++ = static_cast<float>(vertex[i] - origin[i]);
+  }
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t index : triangle) *indices++ = index;
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(handles_->scene, geometry, static_cast<unsigned>(number));
+  rtcReleaseGeometry(geometry);
+  return number;
+}
+
+void EmbreeScene::commit() {
+  rtcCommitScene(handles_->scene);
+  handles_->check("building the ray hierarchy");
+}
+
+namespace {
+
+/// Fills Embree's ray layout; returns whether any ray is active.
+bool load(const RayPacket& rays, RTCRay8& out, std::array<int, packet_size>& valid) {
+  bool any = false;
+  for (std::size_t i = 0; i < packet_size; ++i) {
+    const Ray& ray = rays[i];
+    valid[i] = ray.active ? -1 : 0;
+    any = any || ray.active;
+    out.org_x[i] = ray.origin.x();
+    out.org_y[i] = ray.origin.y();
+    out.org_z[i] = ray.origin.z();
+    out.dir_x[i] = ray.direction.x();
+    out.dir_y[i] = ray.direction.y();
+    out.dir_z[i] = ray.direction.z();
+    out.tnear[i] = ray.t_near;
+    out.tfar[i] = ray.t_far;
+    out.time[i] = 0.0f;
+    out.mask[i] = ~0U;
+    out.id[i] = 0;
+    out.flags[i] = 0;
+  }
+  return any;
+}
+
+}  // namespace
+
+HitPacket EmbreeScene::intersect(const RayPacket& rays, bool coherent) const {
+  HitPacket hits;
+  RTCRayHit8 packet;
+  alignas(32) std::array<int, packet_size> valid;
+  if (!load(rays, packet.ray, valid)) return hits;
+  for (std::size_t i = 0; i < packet_size; ++i)
+    packet.hit.geomID[i] = packet.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect8(valid.data(), handles_->scene, &context, &packet);
+  for (std::size_t i = 0; i < packet_size; ++i) {
+    if (valid[i] == 0 || packet.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID) continue;
+    hits[i] = {static_cast<int>(packet.hit.geomID[i]),
+               packet.hit.primID[i],
+               packet.ray.tfar[i],
+               packet.hit.u[i],
+               packet.hit.v[i],
+               {packet.hit.Ng_x[i], packet.hit.Ng_y[i], packet.hit.Ng_z[i]}};
+  }
+  return hits;
+}
+
+std::array<bool, packet_size> EmbreeScene::occluded(const RayPacket& rays) const {
+  std::array<bool, packet_size> blocked{};
+  RTCRay8 packet;
+  alignas(32) std::array<int, packet_size> valid;
+  if (!load(rays, packet, valid)) return blocked;
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded8(valid.data(), handles_->scene, &context, &packet);
+  for (std::size_t i = 0; i < packet_size; ++i) blocked[i] = valid[i] != 0 && packet.tfar[i] < 0.0f;
+  return blocked;
+}
+
+}  // namespace smelt

@@ -1,0 +1,58 @@
+#pragma once
+// A picture in the making, in parts, linear and unclamped.
+
+#include "core/geometry/vec.h"
+
+#include <array>
+#include <cstddef>
+#include <vector>
+
+namespace smelt {
+
+/// One number per pixel, row-major from the top left.
+using Plane = std::vector<float>;
+/// Three of them: red, green, blue or x, y, z.
+using Plane3 = std::array<Plane, 3>;
+
+inline Vec3f read_pixel(const Plane3& planes, std::size_t i) {
+  return {planes[0][i], planes[1][i], planes[2][i]};
+}
+
+inline void write_pixel(Plane3& planes, std::size_t i, const Vec3f& value) {
+  for (int c = 0; c < 3; ++c) planes[static_cast<std::size_t>(c)][i] = value[c];
+}
+
+/// Means over the samples of each pixel. The picture is albedo * light + specular + emission.
+struct Film {
+  int width = 0;
+  int height = 0;
+  Plane3 light;  ///< diffuse light, weighted by the samples' albedo: the radiance of a white surface
+  Plane3 albedo;
+  Plane3 specular;          ///< mirrored by the coat
+  Plane3 emission;          ///< and backdrop
+  Plane3 normal;            ///< not unit where surfaces share a pixel; zero where there is none
+  Plane3 position;          ///< relative to the eye [m]
+  Plane kind;               ///< share of the pixel that is fluid or collider, 1 to 2; floor 0
+  Plane light_variance;     ///< of the mean luminance of `light`
+  Plane specular_variance;  ///< of the mean luminance of `specular`
+
+  Film(int film_width, int film_height) : width(film_width), height(film_height) {
+    const std::size_t n = size();
+    for (Plane3* planes : {&light, &albedo, &specular, &emission, &normal, &position}) planes->fill(Plane(n, 0.0f));
+    for (Plane* plane : {&kind, &light_variance, &specular_variance}) plane->assign(n, 0.0f);
+  }
+  std::size_t index(int x, int y) const {
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + static_cast<std::size_t>(x);
+  }
+  std::size_t size() const { return static_cast<std::size_t>(width) * static_cast<std::size_t>(height); }
+};
+
+/// Bytes that rendering needs per pixel: the film and the filter's copies of it.
+inline constexpr std::size_t film_bytes_per_pixel = sizeof(float) * (21 + 10);
+
+/// Relative luminance of linear sRGB (Rec. 709).
+inline float luminance(const Vec3f& c) {
+  return 0.2126f * c.x() + 0.7152f * c.y() + 0.0722f * c.z();
+}
+
+}  // namespace smelt

@@ -1,0 +1,37 @@
+#include "render/tone_map.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace smelt {
+
+Vec3f tone_map_neutral(const Vec3f& colour) {
+  constexpr float start = 0.8f;
+  constexpr float room = 1.0f - start;
+  constexpr float desaturation = 0.15f;
+  const Vec3f c = colour.cwiseMax(0.0f);
+  const float peak = c.maxCoeff();
+  if (peak < start) return c;
+  const float new_peak = 1.0f - room * room / (peak + room - start);
+  const float keep = 1.0f / (desaturation * (peak - new_peak) + 1.0f);
+  return (c * (new_peak / peak * keep) + Vec3f::Constant(new_peak * (1.0f - keep))).cwiseMin(1.0f);
+}
+
+float srgb_from_linear(float value) {
+  return value <= 0.0031308f ? 12.92f * value : 1.055f * std::pow(value, 1.0f / 2.4f) - 0.055f;
+}
+
+float linear_from_srgb(float value) {
+  return value <= 0.04045f ? value / 12.92f : std::pow((value + 0.055f) / 1.055f, 2.4f);
+}
+
+std::array<std::uint8_t, 3> quantize_srgb(const Vec3f& colour, float dither) {
+  std::array<std::uint8_t, 3> bytes{};
+  for (int i = 0; i < 3; ++i) {
+    const float level = 255.0f * srgb_from_linear(std::clamp(colour[i], 0.0f, 1.0f)) + 0.5f * dither;
+    bytes[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(std::clamp(level + 0.5f, 0.0f, 255.0f));
+  }
+  return bytes;
+}
+
+}  // namespace smelt

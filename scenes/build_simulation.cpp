@@ -1,0 +1,253 @@
+#include "scenes/build_simulation.h"
+
+#include "core/error.h"
+#include "core/geometry/seeding.h"
+#include "io/mesh_import.h"
+#include "scenes/scene_reader.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace smelt {
+
+namespace {
+
+/// A body's mesh in the world, sound and closed.
+struct PlacedBody {
+  TriangleMesh mesh;
+  double volume = 0.0;
+  Box3 bounds;
+};
+
+void place(TriangleMesh& mesh, const PlacementSettings& s) {
+  const Box3 bounds = compute_bounds(mesh);
+  double scale = s.scale.value_or(1.0);
+  if (s.height) {
+    if (!(bounds.extent()[1] > 0.0)) fail("height_m cannot scale a mesh that is flat along y");
+    scale = *s.height / bounds.extent()[1];
+  }
+  const Vec3 angles = s.rotate_deg * (std::numbers::pi / 180.0);
+  const Mat3 rotation = (Eigen::AngleAxisd(angles[2], Vec3::UnitZ()) * Eigen::AngleAxisd(angles[1], Vec3::UnitY()) *
+                         Eigen::AngleAxisd(angles[0], Vec3::UnitX()))
+                            .toRotationMatrix();
+  for (Vec3& x : mesh.vertices) x = rotation * (scale * x) + s.translate;
+  if (s.stand_at_y) {
+    const double drop = *s.stand_at_y - compute_bounds(mesh).lower[1];
+    for (Vec3& x : mesh.vertices) x[1] += drop;
+  }
+}
+
+TriangleMesh import_placed(const Scene& scene, const std::string& name, const PlacementSettings& placement) {
+  const std::filesystem::path file = find_mesh(scene, name);
+  TriangleMesh mesh = import_mesh(file);
+  try {
+    validate_mesh(mesh);
+    place(mesh, placement);
+  } catch (const Error& error) {
+    fail("{}: {}", file.string(), error.what());
+  }
+  return mesh;
+}
+
+/// The spacing a mesh is mended for: what was asked, or about what the count will come to.
+double estimate_spacing(const Scene& scene, double volume) {
+  if (scene.particles.spacing) return *scene.particles.spacing;
+  return std::cbrt(std::abs(volume) / static_cast<double>(*scene.particles.count));
+}
+
+std::vector<PlacedBody> import_bodies(const Scene& scene, std::vector<std::string>& warnings) {
+  const std::vector<TriangleMesh> meshes = import_placed_bodies(scene);
+  double volume = 0.0;
+  for (const TriangleMesh& mesh : meshes) {
+    // A mesh with holes has no volume to speak of: its box does for the estimate.
+    volume += compute_topology(mesh).closed() ? std::abs(compute_volume(mesh)) : 0.3 * compute_bounds(mesh).extent().prod();
+  }
+  const double spacing = estimate_spacing(scene, volume);
+  std::vector<PlacedBody> bodies;
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    try {
+      RepairedMesh repaired = repair(meshes[k], spacing);
+      if (repaired.report.repaired) warnings.push_back(fmt::format("{}: {}", scene.bodies[k].mesh, repaired.report.description));
+      bodies.push_back({std::move(repaired.mesh), 0.0, {}});
+    } catch (const Error& error) {
+      fail("{}: {}", scene.bodies[k].mesh, error.what());
+    }
+    bodies.back().volume = compute_volume(bodies.back().mesh);
+    bodies.back().bounds = compute_bounds(bodies.back().mesh);
+  }
+  return bodies;
+}
+
+/// Particles of each body share the count by volume.
+std::vector<Seeds> seed_bodies(const Scene& scene, const std::vector<PlacedBody>& bodies) {
+  double total = 0.0;
+  for (const PlacedBody& body : bodies) total += body.volume;
+  std::vector<Seeds> seeds;
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    SeedingOptions options;
+    options.jitter = scene.particles.jitter;
+    options.seed = static_cast<std::uint64_t>(scene.particles.seed) + k;
+    if (scene.particles.spacing)
+      options.spacing = *scene.particles.spacing;
+    else
+      options.count = std::max<std::int64_t>(
+          1, std::llround(static_cast<double>(*scene.particles.count) * bodies[k].volume / total));
+    try {
+      seeds.push_back(seed_particles(bodies[k].mesh, options));
+    } catch (const Error& error) {
+      fail("{}: {}", scene.bodies[k].mesh, error.what());
+    }
+  }
+  return seeds;
+}
+
+std::size_t material_index(const Scene& scene, const std::string& name) {
+  const auto found = std::find_if(scene.materials.begin(), scene.materials.end(), [&](const auto& m) { return m.name == name; });
+  CHECK(found != scene.materials.end());
+  return static_cast<std::size_t>(found - scene.materials.begin());
+}
+
+void append_body(const Scene& scene, std::size_t k, const PlacedBody& body, const Seeds& seeds, Particles<3>& particles) {
+  const BodySettings& settings = scene.bodies[k];
+  const std::size_t material = material_index(scene, settings.material);
+  for (const Vec3& x : seeds.positions) {
+    particles.id.push_back(static_cast<std::int32_t>(particles.id.size()));
+    if (scene.materials.size() > 1) particles.material.push_back(static_cast<std::uint8_t>(material));
+    particles.position.push_back(x);
+    particles.velocity.push_back(settings.velocity);
+    particles.density.push_back(scene.materials[material].density);
+    if (settings.temperature) {
+      const double height = (x[1] - body.bounds.lower[1]) / body.bounds.extent()[1];
+      particles.temperature.push_back((1.0 - height) * settings.temperature->bottom + height * settings.temperature->top);
+    }
+  }
+}
+
+/// A square floor so large that no particle of the domain gets past its edge.
+TriangleMesh make_ground(double height, double half_size, const Vec3& centre) {
+  const auto corner = [&](double x, double z) { return Vec3(centre[0] + x * half_size, height, centre[2] + z * half_size); };
+  return {{corner(-1, -1), corner(-1, 1), corner(1, 1), corner(1, -1)}, {{0, 1, 2}, {0, 2, 3}}};
+}
+
+/// Solid ground under a body is what it stands on: a particle that begins below it could only fall.
+void refuse_bodies_under_ground(const Scene& scene, const std::vector<PlacedBody>& bodies) {
+  for (const ColliderSettings& collider : scene.colliders) {
+    if (collider.mesh != "ground") continue;
+    for (std::size_t k = 0; k < bodies.size(); ++k) {
+      const double below = collider.ground_height - bodies[k].bounds.lower[1];
+      if (below > 1e-6 * bodies[k].bounds.extent()[1])
+        fail("{}: the body reaches {:.4g} m below the ground at y = {} m; move it with translate_m, or put it there with stand_at_y_m = {}",
+             scene.bodies[k].mesh, below, collider.ground_height, collider.ground_height);
+    }
+  }
+}
+
+double automatic_sound_speed(const Scene& scene, const Box3& scene_bounds) {
+  // H: how far anything can fall, over the whole scene along gravity.
+  const double g = scene.gravity.norm();
+  const double height = g > 0.0 ? scene_bounds.extent().dot(scene.gravity.cwiseAbs()) / g : 0.0;
+  double start = 0.0;
+  for (const BodySettings& body : scene.bodies) start = std::max(start, body.velocity.norm());
+  const double expected = std::sqrt(2.0 * g * height) + start;
+  if (!(expected > 0.0))
+    fail("[solver] sound_speed_m_s: nothing moves at the start and there is no gravity, so it does not follow from the scene; give it, "
+         "about ten times the fastest speed expected");
+  return 10.0 * expected;
+}
+
+void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetup& setup) {
+  SolverParameters<3>& p = setup.parameters;
+  p.particle_volume = setup.body_volume / static_cast<double>(setup.particles.size());
+  setup.spacing = std::cbrt(p.particle_volume);
+  p.smoothing_length = scene.particles.smoothing_length_over_spacing * setup.spacing;
+  p.gravity = scene.gravity;
+  p.sound_speed = scene.solver.sound_speed ? *scene.solver.sound_speed : automatic_sound_speed(scene, scene_bounds);
+  const bool viscoplastic = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                        [](const MaterialSettings& m) { return m.viscosity.law == "smd"; });
+  p.shear_wave_speed = scene.solver.shear_wave_speed.value_or(viscoplastic ? p.sound_speed : 0.0);
+  p.artificial_viscosity = scene.solver.artificial_viscosity;
+  p.xsph = scene.solver.xsph;
+  p.courant = scene.time_step.courant;
+  p.min_time_step = scene.time_step.min_time_step;
+  const Vec3 margin = Vec3::Constant(10.0 * scene_bounds.extent().maxCoeff());
+  p.domain.lower = scene.domain.lower.value_or(scene_bounds.lower - margin);
+  p.domain.upper = scene.domain.upper.value_or(scene_bounds.upper + margin);
+}
+
+}  // namespace
+
+std::vector<TriangleMesh> import_placed_bodies(const Scene& scene) {
+  std::vector<TriangleMesh> meshes;
+  for (const BodySettings& body : scene.bodies) meshes.push_back(import_placed(scene, body.mesh, body.placement));
+  return meshes;
+}
+
+TriangleMesh import_placed_collider(const Scene& scene, const ColliderSettings& collider) {
+  return import_placed(scene, collider.mesh, collider.placement);
+}
+
+Rheology to_rheology(const ViscositySettings& s) {
+  Rheology r;
+  if (s.law == "smd") {
+    r.yield_stress = *s.yield_stress;
+    r.consistency = *s.consistency;
+    r.index = *s.index;
+    r.jump_number = s.jump_number;
+    r.rest_viscosity = s.rest_viscosity;
+  } else {
+    r.consistency = s.law == "newtonian" ? *s.viscosity : ThermalRange{0.0, 0.0};
+  }
+  return r;
+}
+
+SimulationSetup build_simulation(const Scene& scene) {
+  SimulationSetup setup;
+  const std::vector<PlacedBody> bodies = import_bodies(scene, setup.warnings);
+  refuse_bodies_under_ground(scene, bodies);
+  const std::vector<Seeds> seeds = seed_bodies(scene, bodies);
+  for (std::size_t k = 0; k < bodies.size(); ++k) {
+    append_body(scene, k, bodies[k], seeds[k], setup.particles);
+    setup.body_volume += bodies[k].volume;
+    setup.body_bounds.extend(bodies[k].bounds.lower);
+    setup.body_bounds.extend(bodies[k].bounds.upper);
+  }
+  for (const MaterialSettings& m : scene.materials) setup.materials.push_back({m.name, m.density, to_rheology(m.viscosity), m.heat});
+
+  Box3 scene_bounds = setup.body_bounds;
+  for (const ColliderSettings& collider : scene.colliders) {
+    setup.responses.push_back({collider.friction, collider.restitution});
+    if (collider.mesh == "ground") {
+      scene_bounds.extend(Vec3(setup.body_bounds.centre()[0], collider.ground_height, setup.body_bounds.centre()[2]));
+      setup.colliders.emplace_back();
+    } else {
+      setup.colliders.push_back(import_placed_collider(scene, collider));
+      const Box3 bounds = compute_bounds(setup.colliders.back());
+      scene_bounds.extend(bounds.lower);
+      scene_bounds.extend(bounds.upper);
+    }
+  }
+  set_parameters(scene, scene_bounds, setup);
+
+  const Box3& domain = setup.parameters.domain;
+  for (std::size_t k = 0; k < setup.colliders.size(); ++k)
+    if (scene.colliders[k].mesh == "ground")
+      setup.colliders[k] = make_ground(scene.colliders[k].ground_height, domain.extent().maxCoeff(), domain.centre());
+  return setup;
+}
+
+Colliders<3> build_colliders(const SimulationSetup& setup) {
+  Colliders<3> colliders;
+  for (std::size_t k = 0; k < setup.colliders.size(); ++k) {
+    const TriangleMesh& mesh = setup.colliders[k];
+    std::vector<Simplex<3>> triangles;
+    triangles.reserve(mesh.triangles.size());
+    for (const auto& t : mesh.triangles) triangles.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+    colliders.add(std::move(triangles), setup.responses[k]);
+  }
+  return colliders;
+}
+
+}  // namespace smelt

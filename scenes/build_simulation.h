@@ -1,0 +1,42 @@
+#pragma once
+// From a scene to particles, colliders and solver parameters.
+
+#include "core/geometry/repair.h"
+#include "core/sph/solver.h"
+#include "scenes/scene.h"
+
+#include <string>
+#include <vector>
+
+namespace smelt {
+
+/// A simulation ready to start, at frame 1.
+struct SimulationSetup {
+  Particles<3> particles;
+  SolverParameters<3> parameters;
+  std::vector<Material> materials;
+  std::vector<TriangleMesh> colliders;     ///< placed in the world [m], one a [[collider]]
+  std::vector<ContactResponse> responses;  ///< one a collider
+  double spacing = 0.0;                    ///< between particles [m]
+  double body_volume = 0.0;                ///< of all bodies' meshes [m^3]
+  Box3 body_bounds;                        ///< of all bodies' meshes [m]
+  std::vector<std::string> warnings;       ///< what was mended in meshes
+};
+
+/// Imports, places, mends and fills the meshes. Throws Error with the mesh's file for those that cannot be used, and for bodies whose
+/// particles start inside an obstacle.
+SimulationSetup build_simulation(const Scene& scene);
+
+/// The obstacles as the solver wants them.
+Colliders<3> build_colliders(const SimulationSetup& setup);
+
+/// The bodies' meshes where the scene puts them, as imported: not mended, perhaps open. Throws Error with the mesh's file.
+std::vector<TriangleMesh> import_placed_bodies(const Scene& scene);
+
+/// The mesh of a collider that is not `ground`, where the scene puts it. Throws Error with the mesh's file.
+TriangleMesh import_placed_collider(const Scene& scene, const ColliderSettings& collider);
+
+/// What a scene's flow law comes to.
+Rheology to_rheology(const ViscositySettings& settings);
+
+}  // namespace smelt

@@ -1,0 +1,66 @@
+#include "scenes/build_view.h"
+
+#include "scenes/build_simulation.h"
+
+#include <algorithm>
+
+namespace smelt {
+
+namespace {
+
+Wax to_wax(const LookSettings::State& state) {
+  return {state.colour.cast<float>(), static_cast<float>(state.roughness), static_cast<float>(state.scatter)};
+}
+
+void set_look(const Scene& scene, Look& look) {
+  look.cold = to_wax(scene.look.cold);
+  look.hot = to_wax(scene.look.hot);
+  look.specular = static_cast<float>(scene.look.specular);
+  look.ior = static_cast<float>(scene.look.ior);
+  if (const auto& heat = scene.materials.front().heat) {
+    look.cold_K = static_cast<float>(heat->cold);
+    look.hot_K = static_cast<float>(heat->hot);
+  }
+  if (scene.look.cold_K) look.cold_K = static_cast<float>(*scene.look.cold_K);
+  if (scene.look.hot_K) look.hot_K = static_cast<float>(*scene.look.hot_K);
+}
+
+void set_camera(const CameraSettings& settings, Camera& camera) {
+  camera.eye = settings.eye.value_or(camera.eye);
+  camera.target = settings.target.value_or(camera.target);
+  camera.vertical_fov_deg = settings.vertical_fov_deg.value_or(camera.vertical_fov_deg);
+  camera.width = settings.width;
+  camera.height = settings.height;
+}
+
+AreaLight to_light(const LightSettings& s) {
+  return {s.shape == "disk" ? LightShape::disk : LightShape::rectangle, s.position, s.target, s.width, s.height,
+          s.radiance.cast<float>()};
+}
+
+}  // namespace
+
+RenderScene build_view(const Scene& scene) {
+  const auto bodies = import_placed_bodies(scene);
+  Box3 bounds;
+  for (const TriangleMesh& mesh : bodies)
+    for (const Vec3& x : mesh.vertices) bounds.extend(x);
+  const auto ground = std::find_if(scene.colliders.begin(), scene.colliders.end(),
+                                   [](const ColliderSettings& c) { return c.mesh == "ground"; });
+  if (ground != scene.colliders.end()) bounds.lower[1] = std::min(bounds.lower[1], ground->ground_height);
+
+  RenderScene view = default_scene(bounds);
+  set_look(scene, view.look);
+  set_camera(scene.camera, view.camera);
+  view.exposure = scene.look.exposure;
+  if (!scene.lights.empty()) view.lights.clear();
+  for (const LightSettings& light : scene.lights) view.lights.push_back(to_light(light));
+  view.ground.enabled = ground != scene.colliders.end();
+  if (view.ground.enabled) view.ground.height = ground->ground_height;
+  for (const ColliderSettings& collider : scene.colliders)
+    if (collider.mesh != "ground")
+      view.colliders.push_back({import_placed_collider(scene, collider), {}, collider.colour.cast<float>()});
+  return view;
+}
+
+}  // namespace smelt

@@ -1,0 +1,110 @@
+#include "scenes/run_report.h"
+
+#include "core/hash.h"
+#include "io/atomic_file.h"
+#include "scenes/version.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <thread>
+
+namespace smelt {
+
+using nlohmann::ordered_json;
+
+struct RunReport::Document {
+  ordered_json root;
+
+  ordered_json& frame(int number) {
+    auto& frames = root["frames"];
+    if (!frames.is_array()) frames = ordered_json::array();
+    while (frames.size() < static_cast<std::size_t>(number)) frames.push_back({{"frame", frames.size() + 1}});
+    return frames[static_cast<std::size_t>(number) - 1];
+  }
+};
+
+namespace {
+
+std::string cpu_name() {
+  std::ifstream info("/proc/cpuinfo");
+  for (std::string line; std::getline(info, line);)
+    if (line.starts_with("model name") && line.find(": ") != std::string::npos) return line.substr(line.find(": ") + 2);
+  return "unknown";
+}
+
+ordered_json cost_json(const StageCost& cost) {
+  return {{"seconds", cost.seconds}, {"bytes", cost.bytes}};
+}
+
+}  // namespace
+
+void StepStatistics::add(const TimeStep& step) {
+  min_dt = n_steps == 0 ? step.dt : std::min(min_dt, step.dt);
+  max_dt = std::max(max_dt, step.dt);
+  total_dt += step.dt;
+  ++n_steps;
+  ++n_by_term[static_cast<std::size_t>(step.term)];
+}
+
+RunReport::RunReport(std::filesystem::path path, bool keep) : path_(std::move(path)), document_(std::make_unique<Document>()) {
+  if (!keep || !std::filesystem::exists(path_)) return;
+  ordered_json old = ordered_json::parse(read_file(path_), nullptr, /*allow_exceptions=*/false);
+  if (old.is_object()) document_->root = std::move(old);
+}
+
+RunReport::~RunReport() = default;
+
+void RunReport::set_run(const std::string& scene_text, std::uint64_t scene_hash, double spacing, double body_volume) {
+  ordered_json& root = document_->root;
+  root["smelt"] = version;
+  root["scene_hash"] = fmt::format("{:016x}", hash_bytes(scene_text));
+  root["simulation_hash"] = fmt::format("{:016x}", scene_hash);
+  root["machine"] = {{"cpu", cpu_name()}, {"threads", std::thread::hardware_concurrency()}};
+  root["particle_spacing_m"] = spacing;
+  root["body_volume_m3"] = body_volume;
+  if (!root.contains("frames")) root["frames"] = ordered_json::array();
+}
+
+void RunReport::set_simulated(int frame, double time, const StepStatistics& steps, const Diagnostics<3>& d, const StageCost& cost) {
+  ordered_json terms = ordered_json::object();
+  for (std::size_t k = 0; k < n_time_step_terms; ++k) terms[std::string(time_step_term_names[k])] = steps.n_by_term[k];
+  ordered_json entry = {{"time_s", time},
+                        {"particles", d.n_particles},
+                        {"steps", steps.n_steps},
+                        {"dt_s",
+                         {{"min", steps.min_dt},
+                          {"mean", steps.n_steps ? steps.total_dt / steps.n_steps : 0.0},
+                          {"max", steps.max_dt},
+                          {"set_by", terms}}},
+                        {"mass_kg", d.mass},
+                        {"momentum_kg_m_s", {d.momentum[0], d.momentum[1], d.momentum[2]}},
+                        {"kinetic_energy_J", d.kinetic_energy},
+                        {"potential_energy_J", d.potential_energy},
+                        {"energy_J", d.kinetic_energy + d.potential_energy},
+                        {"max_speed_m_s", d.max_speed},
+                        {"density_error", {{"mean", d.mean_density_error}, {"max", d.max_density_error}}}};
+  if (d.max_temperature > 0.0) entry["temperature_K"] = {{"min", d.min_temperature}, {"max", d.max_temperature}};
+  entry.update(cost_json(cost));
+  document_->frame(frame)["simulate"] = entry;
+  save();
+}
+
+void RunReport::set_surfaced(int frame, double volume, std::size_t n_vertices, std::size_t n_triangles, const StageCost& cost) {
+  ordered_json entry = {{"volume_m3", volume}, {"vertices", n_vertices}, {"triangles", n_triangles}};
+  entry.update(cost_json(cost));
+  document_->frame(frame)["surface"] = entry;
+  save();
+}
+
+void RunReport::set_rendered(int frame, const StageCost& cost) {
+  document_->frame(frame)["render"] = cost_json(cost);
+  save();
+}
+
+void RunReport::save() {
+  write_file_atomically(path_, document_->root.dump(1) + "\n");
+}
+
+}  // namespace smelt

@@ -1,0 +1,126 @@
+#include "scenes/run_scene.h"
+
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "scenes/film.h"
+#include "scenes/scene_reader.h"
+#include "scenes/scene_writer.h"
+
+#include <charconv>
+#include <chrono>
+#include <functional>
+
+namespace smelt {
+
+namespace {
+
+OutputFolder output_folder(const Scene& scene, const RunOptions& options) {
+  return {std::filesystem::absolute(options.folder.empty() ? std::filesystem::path("out") / scene.shot.name : options.folder)};
+}
+
+double timed(const std::function<void()>& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Nothing computed is ever lost: an earlier result gives way to a new one by taking another name.
+void move_aside(const OutputFolder& folder, Progress& progress) {
+  if (!std::filesystem::exists(folder.scene()) && !std::filesystem::exists(folder.particles())) return;
+  for (int k = 1;; ++k) {
+    std::filesystem::path aside = folder.root;
+    aside += fmt::format(".{}", k);
+    if (std::filesystem::exists(aside)) continue;
+    std::error_code error;
+    std::filesystem::rename(folder.root, aside, error);
+    if (error) fail("{}: cannot move the earlier result aside: {}; use another folder (-o) or --resume", folder.root.string(), error.message());
+    progress.message(fmt::format("moved the earlier result to {} (--resume goes on from it instead)", aside.string()));
+    return;
+  }
+}
+
+/// Whether a stage's files in the folder were made from the same settings as the scene's.
+bool made_from_same(const OutputFolder& folder, const Scene& scene, SceneSection section) {
+  if (!std::filesystem::exists(folder.scene())) return false;
+  try {
+    return write_section(read_scene(folder.scene()), section) == write_section(scene, section);
+  } catch (const Error&) {
+    return false;  // a scene of another version, say: make it again
+  }
+}
+
+/// What may be kept of an earlier run, judged before its scene.toml is replaced.
+struct Kept {
+  bool surface = false;
+  bool render = false;
+};
+
+Kept judge_kept(const OutputFolder& folder, const Scene& scene, bool resume) {
+  Kept kept;
+  kept.surface = resume && made_from_same(folder, scene, SceneSection::surface);
+  kept.render = kept.surface && made_from_same(folder, scene, SceneSection::render);
+  return kept;
+}
+
+}  // namespace
+
+FrameRange parse_frame_range(const std::string& text, int last) {
+  const auto number = [&](std::string_view part, int fallback) {
+    if (part.empty()) return fallback;
+    int value = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error != std::errc() || end != part.data() + part.size())
+      fail("--frames {}: must be A-B, A- or a single frame, counted from 1", text);
+    return value;
+  };
+  const std::size_t dash = text.find('-');
+  const std::string_view whole = text;
+  FrameRange range;
+  range.first = number(whole.substr(0, dash), 1);
+  range.last = dash == std::string::npos ? range.first : number(whole.substr(dash + 1), last);
+  if (text.empty() || range.first < 1 || range.last > last || range.first > range.last)
+    fail("--frames {}: must lie within 1-{}, first frame first", text, last);
+  return range;
+}
+
+RunSummary run_scene(const Scene& scene, const RunOptions& options, Progress& progress) {
+  RunSummary summary{output_folder(scene, options), options.frames.value_or(FrameRange{1, scene.shot.frames})};
+  const OutputFolder& folder = summary.folder;
+  if (!options.resume) move_aside(folder, progress);
+  create_directories_or_fail(folder.root);
+  const Kept kept = judge_kept(folder, scene, options.resume);
+  RunReport report(folder.report(), options.resume);
+  const auto stage = [&](bool keep) { return StageOptions{summary.frames, keep}; };
+  summary.simulate_seconds = timed([&] { simulate_frames(scene, folder, stage(options.resume), report, progress); });
+  summary.surface_seconds = timed([&] { surface_frames(scene, folder, stage(kept.surface), report, progress); });
+  summary.render_seconds = timed([&] { render_frames(scene, folder, stage(kept.render), report, progress); });
+  if (summary.frames.last == scene.shot.frames) {
+    std::string why_not;
+    summary.film = encode_film(folder, scene.shot.name, scene.shot.frames, scene.shot.fps, why_not);
+    if (!summary.film) progress.message("no film: " + why_not);
+  }
+  return summary;
+}
+
+RunSummary run_stage(const Scene& scene, Stage stage, const RunOptions& options, Progress& progress) {
+  RunSummary summary{output_folder(scene, options), options.frames.value_or(FrameRange{1, scene.shot.frames})};
+  const OutputFolder& folder = summary.folder;
+  if (stage == Stage::simulate && !options.resume) move_aside(folder, progress);
+  create_directories_or_fail(folder.root);
+  const Kept kept = judge_kept(folder, scene, options.resume);
+  RunReport report(folder.report(), stage != Stage::simulate || options.resume);
+  switch (stage) {
+    case Stage::simulate:
+      summary.simulate_seconds = timed([&] { simulate_frames(scene, folder, {summary.frames, options.resume}, report, progress); });
+      break;
+    case Stage::surface:
+      summary.surface_seconds = timed([&] { surface_frames(scene, folder, {summary.frames, kept.surface}, report, progress); });
+      break;
+    case Stage::render:
+      summary.render_seconds = timed([&] { render_frames(scene, folder, {summary.frames, kept.render}, report, progress); });
+      break;
+  }
+  return summary;
+}
+
+}  // namespace smelt

@@ -1,0 +1,161 @@
+#pragma once
+// The description of a shot, as a scene file states it. Units are SI and kelvin; defaults are the initial values here.
+// What each key means stands in scenes/scene_schema.cpp, from which docs/scene.md is made.
+
+#include "core/geometry/vec.h"
+#include "core/sph/material.h"
+#include "render/render_frame.h"
+#include "render/scene_view.h"
+#include "surfacing/surface.h"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace smelt {
+
+struct ShotSettings {
+  std::string name;
+  int frames = 0;
+  double fps = 24.0;
+};
+
+struct ParticleSettings {
+  std::optional<std::int64_t> count;
+  std::optional<double> spacing;
+  double jitter = 0.0;
+  std::int64_t seed = 0;
+  double smoothing_length_over_spacing = 1.2;
+};
+
+struct SolverSettings {
+  std::optional<double> sound_speed;
+  std::optional<double> shear_wave_speed;
+  double artificial_viscosity = 0.2;
+  double xsph = 0.3;
+  std::string precision = "single";
+};
+
+struct TimeStepSettings {
+  double courant = 0.25;
+  double min_time_step = 1e-9;
+};
+
+struct DomainSettings {
+  std::optional<Vec3> lower;
+  std::optional<Vec3> upper;
+};
+
+/// The flow law as a scene states it; `Rheology` is what it comes to.
+struct ViscositySettings {
+  std::string law = "smd";
+  std::optional<ThermalRange> viscosity;
+  std::optional<ThermalRange> yield_stress;
+  std::optional<ThermalRange> consistency;
+  std::optional<double> index;
+  std::optional<ThermalRange> jump_number;
+  std::optional<ThermalRange> rest_viscosity;
+};
+
+struct MaterialSettings {
+  std::string name;
+  double density = 0.0;
+  ViscositySettings viscosity;
+  std::optional<HeatProperties> heat;
+};
+
+/// Where a mesh stands: scaled, rotated (about x, then y, then z), moved, then perhaps lowered on a height.
+struct PlacementSettings {
+  std::optional<double> scale;
+  std::optional<double> height;
+  Vec3 rotate_deg = Vec3::Zero();
+  Vec3 translate = Vec3::Zero();
+  std::optional<double> stand_at_y;
+};
+
+/// A temperature that runs linearly from the lowest to the highest point of a body.
+struct VerticalRange {
+  double bottom = 0.0;
+  double top = 0.0;
+};
+
+struct BodySettings {
+  std::string mesh;
+  std::string material;
+  PlacementSettings placement;
+  Vec3 velocity = Vec3::Zero();
+  std::optional<VerticalRange> temperature;
+};
+
+struct ColliderSettings {
+  std::string mesh;
+  PlacementSettings placement;
+  double ground_height = 0.0;
+  double friction = 0.0;
+  double restitution = 0.0;
+  Vec3 colour{0.35, 0.36, 0.38};
+};
+
+struct CameraSettings {
+  std::optional<Vec3> eye;
+  std::optional<Vec3> target;
+  std::optional<double> vertical_fov_deg;
+  int width = 1280;
+  int height = 720;
+};
+
+struct LightSettings {
+  std::string shape = "rectangle";
+  Vec3 position = Vec3::Zero();
+  Vec3 target = Vec3::Zero();
+  double width = 1.0;
+  double height = 1.0;
+  Vec3 radiance{8.0, 8.0, 8.0};
+};
+
+struct LookSettings {
+  struct State {
+    Vec3 colour;
+    double roughness;
+    double scatter;
+  };
+  State cold;
+  State hot;
+  std::optional<double> cold_K;
+  std::optional<double> hot_K;
+  double specular = 1.0;
+  double ior = 1.45;
+  double exposure = 1.0;
+
+  /// The renderer's own look.
+  LookSettings();
+};
+
+struct RenderSettings {
+  int samples = 4;
+  bool denoise = true;
+  std::int64_t seed = 1;
+};
+
+struct Scene {
+  ShotSettings shot;
+  ParticleSettings particles;
+  Vec3 gravity{0.0, -9.81, 0.0};
+  SolverSettings solver;
+  TimeStepSettings time_step;
+  DomainSettings domain;
+  std::vector<MaterialSettings> materials;
+  std::vector<BodySettings> bodies;
+  std::vector<ColliderSettings> colliders;
+  SurfacingOptions surface;
+  CameraSettings camera;
+  std::vector<LightSettings> lights;
+  LookSettings look;
+  RenderSettings render;
+
+  /// Folder of the scene file: mesh paths are looked up there first, then in smelt's own folder.
+  std::filesystem::path folder;
+};
+
+}  // namespace smelt

@@ -1,0 +1,224 @@
+#include "scenes/schema.h"
+
+#include <cmath>
+
+namespace smelt {
+
+namespace {
+
+// Adapters between the visitor's types and the settings' own.
+
+void visit_int(SchemaVisitor& v, const Key& key, int& value, const Limits& limits, bool required = false) {
+  std::int64_t wide = value;
+  required ? v.required_integer(key, wide, limits) : v.integer(key, wide, limits);
+  value = static_cast<int>(wide);
+}
+
+void visit_range(SchemaVisitor& v, const Key& key, std::optional<ThermalRange>& value, const Limits& limits) {
+  std::optional<std::pair<double, double>> pair;
+  if (value) pair = {value->cold, value->hot};
+  v.range(key, "cold", "hot", pair, limits);
+  if (pair) value = ThermalRange{pair->first, pair->second};
+}
+
+template <typename T>
+void visit_tables(SchemaVisitor& v, const Key& key, std::vector<T>& values, const std::function<void(T&)>& visit) {
+  v.tables(
+      key, [&] { return values.size(); }, [&](std::size_t n) { values.resize(n); },
+      [&](std::size_t k) { visit(values[k]); });
+}
+
+
+// ------------------------------------------------------------------------------------------------------------- simulation
+
+void visit_viscosity(SchemaVisitor& v, ViscositySettings& s) {
+  v.choice({"law", "`smd`: Souza Mendes-Dutra viscoplastic; `newtonian`; `inviscid`"}, s.law, {"smd", "newtonian", "inviscid"});
+  visit_range(v, {"viscosity_Pa_s", "viscosity eta of a `newtonian` fluid", "required by `newtonian`, refused otherwise"}, s.viscosity,
+              positive);
+  visit_range(v, {"yield_stress_Pa", "`smd`: stress tau0 below which it hardly flows; 0 is a power-law fluid", "required by `smd`"},
+              s.yield_stress, non_negative);
+  visit_range(v, {"consistency_Pa_sn", "`smd`: consistency K", "required by `smd`"}, s.consistency, positive);
+  v.number({"index", "`smd`: flow index n; below 1 it thins as it shears", "required by `smd`"}, s.index, {0.0, 1.0, true});
+  visit_range(v,
+              {"jump_number",
+               "`smd`: J = eta0 gdot1/tau0 - 1 with gdot1 = (tau0/K)^(1/n): how much stiffer it is at rest than at the end of yielding",
+               "`smd` with a yield stress needs this or rest_viscosity_Pa_s, not both"},
+              s.jump_number, non_negative);
+  visit_range(v, {"rest_viscosity_Pa_s", "`smd`: viscosity eta0 at rest", "see jump_number"}, s.rest_viscosity, positive);
+}
+
+void visit_material(SchemaVisitor& v, MaterialSettings& s) {
+  v.required_text({"name", "what bodies call it"}, s.name);
+  v.required_number({"density_kg_m3", "density at rest"}, s.density, positive);
+  v.table({"viscosity", "the flow law. Where the material has `heat`, a value may be a range `{ cold = , hot = }`"}, nullptr,
+          [&] { visit_viscosity(v, s.viscosity); });
+  bool has_heat = s.heat.has_value();
+  HeatProperties heat = s.heat.value_or(HeatProperties{});
+  v.table({"heat", "conduction and melting; leave it out and nothing thermal exists"}, &has_heat, [&] {
+    v.required_number({"diffusivity_m2_s", "thermal diffusivity k"}, heat.diffusivity, non_negative);
+    v.required_number({"cold_K", "at and below, the cold values hold"}, heat.cold, non_negative);
+    v.required_number({"hot_K", "at and above, the hot values hold; above cold_K"}, heat.hot, non_negative);
+  });
+  if (has_heat) s.heat = heat;
+}
+
+void visit_placement(SchemaVisitor& v, PlacementSettings& s) {
+  v.number({"scale", "the mesh's coordinates times this are metres", "1"}, s.scale, positive);
+  v.number({"height_m", "scales the mesh so that it is this tall; instead of `scale`", "not used"}, s.height, positive);
+  v.vector({"rotate_deg", "turns about x, then y, then z"}, s.rotate_deg, any_number);
+  v.vector({"translate_m", "moves after scaling and turning"}, s.translate, any_number);
+  v.number({"stand_at_y_m", "then moves along y so that the lowest point is here", "not moved"}, s.stand_at_y, any_number);
+}
+
+void visit_body(SchemaVisitor& v, BodySettings& s) {
+  v.required_text({"mesh", "file: .obj .ply .stl .off .gltf .glb, from the scene's folder or smelt's own"}, s.mesh);
+  v.required_text({"material", "name of a [[material]]"}, s.material);
+  visit_placement(v, s.placement);
+  v.vector({"velocity_m_s", "at the start"}, s.velocity, any_number);
+  std::optional<std::pair<double, double>> temperature;
+  if (s.temperature) temperature = {s.temperature->bottom, s.temperature->top};
+  v.range({"temperature_K", "at the start: a number, or `{ bottom = , top = }` for a linear rise over the body's height",
+           "required where the material has heat, refused otherwise"},
+          "bottom", "top", temperature, non_negative);
+  if (temperature) s.temperature = VerticalRange{temperature->first, temperature->second};
+}
+
+void visit_collider(SchemaVisitor& v, ColliderSettings& s) {
+  v.required_text({"mesh", "a mesh file, or `ground`: a floor without end"}, s.mesh);
+  visit_placement(v, s.placement);
+  v.number({"ground_y_m", "height of the `ground`"}, s.ground_height, any_number);
+  v.number({"friction", "share of the tangential velocity kept after a hit; 0 with restitution 0: no slip"}, s.friction, unit_interval);
+  v.number({"restitution", "share of the normal velocity returned after a hit"}, s.restitution, unit_interval);
+  v.vector({"colour", "linear RGB in pictures"}, s.colour, unit_interval);
+}
+
+void visit_simulation(SchemaVisitor& v, Scene& s) {
+  v.table({"particles", "how finely bodies are divided. Give `count` or `spacing_m`"}, nullptr, [&] {
+    v.integer({"count", "particles in all bodies together, met to 1 %", "see spacing_m"}, s.particles.count, {1, 2e9});
+    v.number({"spacing_m", "distance between particles", "follows from count"}, s.particles.spacing, positive);
+    v.number({"jitter", "random shift at the start, as a fraction of the spacing"}, s.particles.jitter, {0.0, 0.49});
+    v.integer({"seed", "of the jitter"}, s.particles.seed, {0, 9.0e15});
+    v.number({"smoothing_length_over_spacing", "h over the spacing; 1.2 gives about 58 neighbours"},
+             s.particles.smoothing_length_over_spacing, {0.9, 3.0});
+  });
+  v.table({"gravity", "a uniform force"}, nullptr, [&] { v.vector({"acceleration_m_s2", "gravity"}, s.gravity, any_number); });
+  v.table({"solver", "numerical settings; the defaults suit most shots"}, nullptr, [&] {
+    v.number({"sound_speed_m_s", "c of the equation of state p = c^2 (rho - rho0); the density errs by about gH/c^2",
+              "10 sqrt(2 g H), H the height of the scene, plus ten times the fastest start"},
+             s.solver.sound_speed, positive);
+    v.number({"shear_wave_speed_m_s",
+              "stiffness sqrt(G/rho0) of the relaxed stress, with which any viscosity is stable; 0: the stress follows the strain rate at "
+              "once and viscosity limits the time step",
+              "the sound speed where a material is `smd`, else 0"},
+             s.solver.shear_wave_speed, non_negative);
+    v.number({"artificial_viscosity", "alpha, damps sound"}, s.solver.artificial_viscosity, {0.0, 10.0});
+    v.number({"xsph", "epsilon, how much particles move with their neighbours' velocity"}, s.solver.xsph, unit_interval);
+    v.choice({"precision", "of the pair sums; the state is always double"}, s.solver.precision, {"single", "double"});
+  });
+  v.table({"time_step", "the adaptive time step"}, nullptr, [&] {
+    v.number({"courant", "C in dt = C min(h/(v + c), h^2 rho/(8 eta), sqrt(h/a))"}, s.time_step.courant, {0.0, 0.5, true});
+    v.number({"min_s", "a smaller step is an error"}, s.time_step.min_time_step, positive);
+  });
+  v.table({"domain", "a particle that leaves this box is an error"}, nullptr, [&] {
+    v.vector({"lower_m", "lowest corner", "ten times the scene's size below it"}, s.domain.lower, any_number);
+    v.vector({"upper_m", "highest corner", "ten times the scene's size above it"}, s.domain.upper, any_number);
+  });
+  visit_tables<MaterialSettings>(v, {"material", "what bodies are made of; at least one"}, s.materials,
+                                 [&](MaterialSettings& m) { visit_material(v, m); });
+  visit_tables<BodySettings>(v, {"body", "what flows; at least one"}, s.bodies, [&](BodySettings& b) { visit_body(v, b); });
+  visit_tables<ColliderSettings>(v, {"collider", "what it meets; none is allowed"}, s.colliders,
+                                 [&](ColliderSettings& c) { visit_collider(v, c); });
+}
+
+// --------------------------------------------------------------------------------------------------------- surface, render
+
+void visit_surface(SchemaVisitor& v, Scene& s) {
+  v.table({"surface", "the mesh around the particles"}, nullptr, [&] {
+    v.number({"iso_value", "of the characteristic function, 1 deep inside and 0 outside"}, s.surface.iso_value, {0.01, 0.99});
+    v.number({"cell_over_spacing", "edge of a grid cell over the particle spacing"}, s.surface.cell_over_spacing, {0.1, 2.0});
+    v.number({"kernel_over_spacing", "smoothing length of the kernel over the particle spacing"}, s.surface.kernel_over_spacing,
+             {0.6, 3.0});
+    v.number({"thin_feature_gain", "how far drops, threads and sheets one particle thick are kept from shrinking"},
+             s.surface.thin_feature_gain, unit_interval);
+    visit_int(v, {"smoothing_passes", "volume-preserving smoothing of the mesh"}, s.surface.smoothing_passes, {0, 1000});
+  });
+}
+
+void visit_look_state(SchemaVisitor& v, std::string_view name, std::string_view meaning, LookSettings::State& state) {
+  v.table({name, meaning}, nullptr, [&] {
+    v.vector({"colour", "linear RGB under the coat"}, state.colour, unit_interval);
+    v.number({"roughness", "of the coat: small is wet, large is matt"}, state.roughness, {0.01, 1.0});
+    v.number({"scatter_m", "how far red light wanders under the surface"}, state.scatter, non_negative);
+  });
+}
+
+void visit_render(SchemaVisitor& v, Scene& s) {
+  v.table({"camera", "a pinhole camera; by default it frames the bodies"}, nullptr, [&] {
+    v.vector({"eye_m", "where it is", "a three-quarter view of the bodies"}, s.camera.eye, any_number);
+    v.vector({"target_m", "what is in the middle of the picture", "the middle of the bodies"}, s.camera.target, any_number);
+    v.number({"vertical_fov_deg", "angle from bottom to top", "18"}, s.camera.vertical_fov_deg, {1.0, 150.0});
+    visit_int(v, {"width", "of the picture in pixels"}, s.camera.width, {16, 16384});
+    visit_int(v, {"height", "of the picture in pixels"}, s.camera.height, {16, 16384});
+  });
+  visit_tables<LightSettings>(
+      v, {"light", "area lights; with none, a soft key from the left and a warm rim from behind"}, s.lights, [&](LightSettings& l) {
+        v.choice({"shape", "flat lamp"}, l.shape, {"rectangle", "disk"});
+        v.vector({"position_m", "centre"}, l.position, any_number);
+        v.vector({"target_m", "the lamp faces this point"}, l.target, any_number);
+        v.number({"width_m", "or diameter"}, l.width, positive);
+        v.number({"height_m", "of a rectangle"}, l.height, positive);
+        v.vector({"radiance", "linear RGB"}, l.radiance, non_negative);
+      });
+  v.table({"look", "how the fluid looks, blended from cold to hot by its temperature"}, nullptr, [&] {
+    visit_look_state(v, "cold", "at and below cold_K", s.look.cold);
+    visit_look_state(v, "hot", "at and above hot_K", s.look.hot);
+    v.number({"cold_K", "where the cold look ends", "the first material's heat.cold_K"}, s.look.cold_K, non_negative);
+    v.number({"hot_K", "where the hot look begins", "the first material's heat.hot_K"}, s.look.hot_K, non_negative);
+    v.number({"specular", "strength of the coat's reflection"}, s.look.specular, unit_interval);
+    v.number({"ior", "index of refraction of the coat"}, s.look.ior, {1.01, 3.0});
+    v.number({"exposure", "brightness before tone mapping"}, s.look.exposure, positive);
+  });
+  v.table({"render", "quality of the pictures"}, nullptr, [&] {
+    visit_int(v, {"samples", "per pixel of fluid"}, s.render.samples, {1, 4096});
+    v.boolean({"denoise", "filter what noise is left"}, s.render.denoise);
+    v.integer({"seed", "of the noise"}, s.render.seed, {0, 4294967295.0});
+  });
+}
+
+}  // namespace
+
+LookSettings::LookSettings() {
+  const Look look;
+  const auto state = [](const Wax& wax) {
+    // Shortest decimals that are the renderer's floats, so that a scene file reads well.
+    const auto tidy = [](float x) { return std::round(static_cast<double>(x) * 1e6) / 1e6; };
+    return State{Vec3(tidy(wax.base_colour[0]), tidy(wax.base_colour[1]), tidy(wax.base_colour[2])), tidy(wax.roughness),
+                 tidy(wax.scatter_m)};
+  };
+  cold = state(look.cold);
+  hot = state(look.hot);
+}
+
+void visit_section(SchemaVisitor& visitor, Scene& scene, SceneSection section) {
+  switch (section) {
+    case SceneSection::simulation:
+      visitor.number({"fps", ""}, scene.shot.fps, positive);
+      visit_simulation(visitor, scene);
+      break;
+    case SceneSection::surface: visit_surface(visitor, scene); break;
+    case SceneSection::render: visit_render(visitor, scene); break;
+  }
+}
+
+void visit_scene(SchemaVisitor& visitor, Scene& scene) {
+  visitor.table({"shot", "the sequence"}, nullptr, [&] {
+    visitor.required_text({"name", "names the output folder and the film"}, scene.shot.name);
+    visit_int(visitor, {"frames", "number of frames; frame 1 is the start"}, scene.shot.frames, {1, 100000}, true);
+    visitor.number({"fps", "frames per second"}, scene.shot.fps, {0.0, 100000.0, true});
+  });
+  visit_simulation(visitor, scene);
+  visit_surface(visitor, scene);
+  visit_render(visitor, scene);
+}
+
+}  // namespace smelt

@@ -1,0 +1,146 @@
+#include "core/error.h"
+#include "core/hash.h"
+#include "core/sph/particle_frame.h"
+#include "io/atomic_file.h"
+#include "io/checkpoint.h"
+#include "io/particles_vdb.h"
+#include "scenes/build_simulation.h"
+#include "scenes/scene_writer.h"
+#include "scenes/stage_frames.h"
+#include "scenes/stages.h"
+#include "scenes/version.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+namespace smelt {
+
+namespace {
+
+/// What the caches of a frame hold, ordered by id.
+template <typename Real>
+ParticleFrame to_frame(const Solver<3, Real>& solver, double spacing, int frame, double time) {
+  const Particles<3>& p = solver.particles();
+  ParticleFrame result;
+  result.spacing = spacing;
+  result.smoothing_length = solver.parameters().smoothing_length;
+  result.mass = solver.mass(0);
+  result.frame = frame;
+  result.time = time;
+  const std::size_t n = p.size();
+  std::vector<std::size_t> at(n);
+  for (std::size_t i = 0; i < n; ++i) at[static_cast<std::size_t>(p.id[i])] = i;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t i = at[k];
+    result.id.push_back(p.id[i]);
+    result.position.push_back(p.position[i]);
+    result.velocity.push_back(p.velocity[i].cast<float>());
+    result.density.push_back(static_cast<float>(p.density[i]));
+    if (!p.temperature.empty()) result.temperature.push_back(static_cast<float>(p.temperature[i]));
+    if (!p.viscosity.empty()) result.viscosity.push_back(p.viscosity[i]);
+  }
+  return result;
+}
+
+/// The newest checkpoint that is sound and not beyond the frames asked for.
+std::optional<Checkpoint> find_checkpoint(const OutputFolder& folder, int last_frame, std::uint64_t scene_hash, Progress& progress) {
+  std::vector<std::filesystem::path> files;
+  if (std::filesystem::is_directory(folder.checkpoints()))
+    for (const auto& entry : std::filesystem::directory_iterator(folder.checkpoints()))
+      if (entry.path().extension() == ".bin") files.push_back(entry.path());
+  std::sort(files.rbegin(), files.rend());
+  for (const auto& file : files) {
+    try {
+      Checkpoint checkpoint = read_checkpoint(file);
+      if (checkpoint.scene_hash != scene_hash)
+        fail("{}: this folder was simulated with another scene, or another version of smelt; resume with {}, or use another folder (-o)",
+             file.string(), folder.scene().string());
+      if (checkpoint.frame <= last_frame) return checkpoint;
+    } catch (const Error& error) {
+      if (std::string(error.what()).find("damaged") == std::string::npos) throw;
+      progress.message(fmt::format("{}; trying the one before", error.what()));
+    }
+  }
+  return std::nullopt;
+}
+
+/// Advances from one frame to the next.
+template <typename Real>
+StepStatistics advance_frame(Solver<3, Real>& solver, double start_time, double interval, ProgressState state, Progress& progress) {
+  StepStatistics statistics;
+  solver.prepare();
+  for (double remaining = interval; remaining > 0.0;) {
+    const TimeStep step = solver.step(remaining, start_time + interval - remaining);
+    remaining -= step.dt;
+    statistics.add(step);
+    state.fraction = 1.0 - remaining / interval;
+    state.details = fmt::format("step {} dt {:.2e} s ({})", statistics.n_steps, step.dt, time_step_term_names[static_cast<std::size_t>(step.term)]);
+    progress.update(state);
+    stop_if_asked(progress, "simulate", state.frame);
+  }
+  return statistics;
+}
+
+/// Cache first, then the checkpoint: a checkpoint says that its frame is safe.
+template <typename Real>
+void store_frame(const Solver<3, Real>& solver, const SimulationSetup& setup, const OutputFolder& folder, std::uint64_t scene_hash,
+                 int frame, double time) {
+  write_particles(folder.particles(frame), to_frame(solver, setup.spacing, frame, time));
+  write_checkpoint(folder.checkpoint(frame), {frame, time, scene_hash, solver.particles()});
+  std::filesystem::remove(folder.checkpoint(frame - 2));
+}
+
+template <typename Real>
+void run_simulation(const Scene& scene, const OutputFolder& folder, const StageOptions& options, SimulationSetup& setup,
+                    std::uint64_t scene_hash, RunReport& report, Progress& progress) {
+  const std::optional<Checkpoint> checkpoint =
+      options.resume ? find_checkpoint(folder, options.frames.last, scene_hash, progress) : std::nullopt;
+  Solver<3, Real> solver(setup.parameters, setup.materials, build_colliders(setup),
+                         checkpoint ? checkpoint->particles : std::move(setup.particles));
+  int frame = 1;
+  if (checkpoint) {
+    frame = checkpoint->frame;
+    progress.message(fmt::format("resuming after frame {}", frame));
+  } else {
+    const CostMeter meter;
+    store_frame(solver, setup, folder, scene_hash, 1, 0.0);
+    report.set_simulated(1, 0.0, {}, compute_diagnostics(solver), meter.finish({folder.particles(1)}));
+  }
+
+  while (frame < options.frames.last) {
+    const CostMeter meter;
+    const double start_time = (frame - 1) / scene.shot.fps;
+    ++frame;
+    const ProgressState state{"simulate", frame, 1, options.frames.last, 0.0, ""};
+    StepStatistics statistics;
+    try {
+      statistics = advance_frame(solver, start_time, 1.0 / scene.shot.fps, state, progress);
+    } catch (const DivergedError& error) {
+      throw DivergedError(fmt::format("{}; frames 1 to {} are kept in {}", error.what(), frame - 1, folder.particles().string()));
+    }
+    const double time = (frame - 1) / scene.shot.fps;
+    store_frame(solver, setup, folder, scene_hash, frame, time);
+    report.set_simulated(frame, time, statistics, compute_diagnostics(solver),
+                         meter.finish({folder.particles(frame), folder.checkpoint(frame)}));
+  }
+}
+
+}  // namespace
+
+void simulate_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report, Progress& progress) {
+  SimulationSetup setup = build_simulation(scene);
+  for (const std::string& warning : setup.warnings) progress.message("warning: " + warning);
+  create_directories_or_fail(folder.particles());
+  create_directories_or_fail(folder.checkpoints());
+  const std::uint64_t scene_hash = hash_bytes(version, hash_bytes(write_section(scene, SceneSection::simulation)));
+  const std::string text = write_scene(scene);
+  write_file_atomically(folder.scene(), text);
+  report.set_run(text, scene_hash, setup.spacing, setup.body_volume);
+  if (scene.solver.precision == "double")
+    run_simulation<double>(scene, folder, options, setup, scene_hash, report, progress);
+  else
+    run_simulation<float>(scene, folder, options, setup, scene_hash, report, progress);
+}
+
+}  // namespace smelt

@@ -1,0 +1,151 @@
+#include "scenes/validate_scene.h"
+
+#include "core/error.h"
+#include "scenes/nearest_word.h"
+#include "scenes/scene_reader.h"
+
+#include <algorithm>
+#include <set>
+
+namespace smelt {
+
+void SceneErrors::add(const std::string& key_path, const std::string& what) {
+  // An array's element stands where its array does.
+  std::string at = key_path.substr(0, key_path.find('['));
+  for (const auto& [path, text] : overrides_)
+    if (at == path || at.starts_with(path + ".")) return entries_.push_back({0, fmt::format("{}: {}: {}", text, key_path, what)});
+  while (!lines_.contains(at) && at.find('.') != std::string::npos) at = at.substr(0, at.rfind('.'));
+  const int line = lines_.contains(at) ? lines_.at(at) : 1;
+  entries_.push_back({line, fmt::format("{}:{}: {}: {}", file_, std::max(line, 1), key_path, what)});
+}
+
+void SceneErrors::throw_if_any() const {
+  if (entries_.empty()) return;
+  std::vector<Entry> sorted = entries_;
+  std::stable_sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) { return a.line < b.line; });
+  std::string text = fmt::format("{} error{} in {}:", sorted.size(), sorted.size() == 1 ? "" : "s", file_);
+  for (const Entry& entry : sorted) text += "\n  " + entry.text;
+  throw Error(text);
+}
+
+namespace {
+
+void validate_viscosity(const ViscositySettings& s, const std::string& path, SceneErrors& errors) {
+  const auto refuse = [&](bool given, const char* key) {
+    if (given) errors.add(fmt::format("{}.{}", path, key), fmt::format("a {} fluid has none; leave it out", s.law));
+  };
+  const auto require = [&](bool given, const char* key) {
+    if (!given) errors.add(fmt::format("{}.{}", path, key), fmt::format("missing: law \"{}\" needs it", s.law));
+  };
+  if (s.law == "smd") {
+    refuse(s.viscosity.has_value(), "viscosity_Pa_s");
+    require(s.yield_stress.has_value(), "yield_stress_Pa");
+    require(s.consistency.has_value(), "consistency_Pa_sn");
+    require(s.index.has_value(), "index");
+    if (s.jump_number && s.rest_viscosity)
+      errors.add(path + ".rest_viscosity_Pa_s", "give jump_number or rest_viscosity_Pa_s, not both: one follows from the other");
+    const bool yields = s.yield_stress && (s.yield_stress->cold > 0.0 || s.yield_stress->hot > 0.0);
+    if (yields && !s.jump_number && !s.rest_viscosity)
+      errors.add(path + ".jump_number", "missing: a yield stress needs jump_number or rest_viscosity_Pa_s");
+    return;
+  }
+  if (s.law == "newtonian")
+    require(s.viscosity.has_value(), "viscosity_Pa_s");
+  else
+    refuse(s.viscosity.has_value(), "viscosity_Pa_s");
+  refuse(s.yield_stress.has_value(), "yield_stress_Pa");
+  refuse(s.consistency.has_value(), "consistency_Pa_sn");
+  refuse(s.index.has_value(), "index");
+  refuse(s.jump_number.has_value(), "jump_number");
+  refuse(s.rest_viscosity.has_value(), "rest_viscosity_Pa_s");
+}
+
+void validate_material(const MaterialSettings& m, const std::string& path, SceneErrors& errors) {
+  validate_viscosity(m.viscosity, path + ".viscosity", errors);
+  if (m.heat && !(m.heat->hot > m.heat->cold))
+    errors.add(path + ".heat.hot_K", fmt::format("must be above cold_K = {}, is {}", m.heat->cold, m.heat->hot));
+  const auto check_range = [&](const std::optional<ThermalRange>& range, const char* key) {
+    if (range && range->cold != range->hot && !m.heat)
+      errors.add(fmt::format("{}.viscosity.{}", path, key), "runs from cold to hot, but the material has no heat");
+  };
+  check_range(m.viscosity.viscosity, "viscosity_Pa_s");
+  check_range(m.viscosity.yield_stress, "yield_stress_Pa");
+  check_range(m.viscosity.consistency, "consistency_Pa_sn");
+  check_range(m.viscosity.jump_number, "jump_number");
+  check_range(m.viscosity.rest_viscosity, "rest_viscosity_Pa_s");
+}
+
+void validate_placement(const PlacementSettings& s, const std::string& path, SceneErrors& errors) {
+  if (s.scale && s.height) errors.add(path + ".height_m", "give scale or height_m, not both");
+}
+
+void validate_mesh_file(const Scene& scene, const std::string& mesh, const std::string& path, SceneErrors& errors) {
+  if (mesh.empty()) return;
+  try {
+    find_mesh(scene, mesh);
+  } catch (const Error& error) {
+    errors.add(path + ".mesh", error.what());
+  }
+}
+
+void validate_bodies(const Scene& scene, SceneErrors& errors) {
+  std::vector<std::string> names;
+  for (const auto& m : scene.materials) names.push_back(m.name);
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
+    const BodySettings& body = scene.bodies[k];
+    const std::string path = fmt::format("body.{}", k);
+    validate_placement(body.placement, path, errors);
+    validate_mesh_file(scene, body.mesh, path, errors);
+    const auto found = std::find(names.begin(), names.end(), body.material);
+    if (found == names.end()) {
+      if (body.material.empty()) continue;
+      const auto nearest = nearest_word(body.material, names);
+      errors.add(path + ".material", fmt::format("there is no [[material]] named \"{}\"; {}", body.material,
+                                                 nearest ? fmt::format("did you mean \"{}\"?", *nearest)
+                                                         : fmt::format("there are: {}", fmt::join(names, ", "))));
+      continue;
+    }
+    const MaterialSettings& material = scene.materials[static_cast<std::size_t>(found - names.begin())];
+    if (material.heat && !body.temperature)
+      errors.add(path + ".temperature_K", fmt::format("missing: material \"{}\" has heat", material.name));
+    if (!material.heat && body.temperature)
+      errors.add(path + ".temperature_K", fmt::format("material \"{}\" has no heat; give it one, or leave this out", material.name));
+  }
+}
+
+}  // namespace
+
+void validate_scene(const Scene& scene, SceneErrors& errors) {
+  if (scene.particles.count && scene.particles.spacing)
+    errors.add("particles.spacing_m", "give count or spacing_m, not both");
+  if (!scene.particles.count && !scene.particles.spacing) errors.add("particles.count", "missing: give count or spacing_m");
+  if (scene.shot.name.find('/') != std::string::npos) errors.add("shot.name", "names a folder and must not hold a /");
+
+  if (scene.materials.empty()) errors.add("material", "missing: a scene needs at least one [[material]]");
+  if (scene.bodies.empty()) errors.add("body", "missing: a scene needs at least one [[body]]");
+  if (scene.materials.size() > 255) errors.add("material", fmt::format("up to 255 are possible, there are {}", scene.materials.size()));
+  std::set<std::string> names;
+  std::size_t n_hot = 0;
+  for (std::size_t k = 0; k < scene.materials.size(); ++k) {
+    const std::string path = fmt::format("material.{}", k);
+    validate_material(scene.materials[k], path, errors);
+    if (!names.insert(scene.materials[k].name).second && !scene.materials[k].name.empty())
+      errors.add(path + ".name", fmt::format("another material is called \"{}\" too", scene.materials[k].name));
+    if (scene.materials[k].heat) ++n_hot;
+  }
+  if (n_hot != 0 && n_hot != scene.materials.size())
+    errors.add("material", "either all materials of a scene have heat or none: heat would stop at the ones without");
+  validate_bodies(scene, errors);
+
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+    const std::string path = fmt::format("collider.{}", k);
+    validate_placement(scene.colliders[k].placement, path, errors);
+    if (scene.colliders[k].mesh != "ground") validate_mesh_file(scene, scene.colliders[k].mesh, path, errors);
+  }
+  if (scene.domain.lower && scene.domain.upper && !((*scene.domain.upper - *scene.domain.lower).array() > 0.0).all())
+    errors.add("domain.upper_m", "must be above lower_m along every axis");
+  if (scene.look.cold_K && scene.look.hot_K && !(*scene.look.hot_K > *scene.look.cold_K))
+    errors.add("look.hot_K", fmt::format("must be above cold_K = {}, is {}", *scene.look.cold_K, *scene.look.hot_K));
+}
+
+}  // namespace smelt

@@ -1,0 +1,80 @@
+#include "surfacing/attributes.h"
+
+#include "core/error.h"
+#include "surfacing/local_particles.h"
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
+
+namespace smelt {
+
+namespace {
+
+constexpr std::size_t n_fields = 6;  // velocity, temperature, viscosity, extra
+
+struct VertexInBin {
+  std::uint64_t key;
+  std::uint32_t vertex;
+};
+
+/// Vertices sorted by the bin they are in, so that those of a bin share their neighbours.
+std::vector<VertexInBin> sort_vertices(const std::vector<Vec3>& vertices, double edge) {
+  std::vector<VertexInBin> out(vertices.size());
+  for (std::size_t v = 0; v < vertices.size(); ++v) {
+    const Vec3 b = vertices[v] / edge;
+    out[v] = {lattice_key(floor_to_int(b[0]), floor_to_int(b[1]), floor_to_int(b[2])), static_cast<std::uint32_t>(v)};
+  }
+  tbb::parallel_sort(out, [](const VertexInBin& a, const VertexInBin& b) {
+    return a.key != b.key ? a.key < b.key : a.vertex < b.vertex;
+  });
+  return out;
+}
+
+}  // namespace
+
+std::vector<float> compute_attributes(SurfaceMesh& surface, const ParticleFrame& particles, const ParticleBins& bins,
+                                      std::span<const float> volume, std::span<const float> extra, double h) {
+  CHECK_EQ(volume.size(), bins.position.size());
+  CHECK_EQ(extra.size(), bins.position.size());
+  const bool has_temperature = !particles.temperature.empty(), has_viscosity = !particles.viscosity.empty();
+  const std::vector<Vec3>& vertices = surface.mesh.vertices;
+  const std::size_t n = vertices.size();
+  surface.velocity.resize(n);
+  surface.temperature.resize(has_temperature ? n : 0);
+  surface.viscosity.resize(has_viscosity ? n : 0);
+  std::vector<float> extra_at_vertex(n);
+  const auto fields_of = [&](std::uint32_t j) {
+    const std::uint32_t i = bins.index[j];
+    const Vec3f& v = particles.velocity[i];
+    return std::array<float, n_fields>{v[0],
+                                       v[1],
+                                       v[2],
+                                       has_temperature ? particles.temperature[i] : 0.0f,
+                                       has_viscosity ? particles.viscosity[i] : 0.0f,
+                                       extra[j]};
+  };
+
+  const std::vector<VertexInBin> sorted = sort_vertices(vertices, bins.edge);
+  std::vector<std::size_t> group;
+  for (std::size_t i = 0; i < n; ++i)
+    if (i == 0 || sorted[i].key != sorted[i - 1].key) group.push_back(i);
+  group.push_back(n);
+  tbb::parallel_for(std::size_t{1}, group.size(), [&](std::size_t g) {
+    Box3 box;
+    for (std::size_t i = group[g - 1]; i < group[g]; ++i) box.extend(vertices[sorted[i].vertex]);
+    LocalParticles<n_fields> near;
+    gather_particles(near, bins, volume, box, h, fields_of);
+    for (std::size_t i = group[g - 1]; i < group[g]; ++i) {
+      const std::uint32_t v = sorted[i].vertex;
+      const auto total = sum_at(near, vertices[v]);
+      CHECK_GT(total[0], 0.0f);
+      surface.velocity[v] = Vec3f(total[1], total[2], total[3]) / total[0];
+      if (has_temperature) surface.temperature[v] = total[4] / total[0];
+      if (has_viscosity) surface.viscosity[v] = total[5] / total[0];
+      extra_at_vertex[v] = total[6] / total[0];
+    }
+  });
+  return extra_at_vertex;
+}
+
+}  // namespace smelt

@@ -1,0 +1,40 @@
+#pragma once
+// Keeping drops and threads at their volume, and the smoothing away from them.
+
+#include "surfacing/particle_bins.h"
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+namespace smelt {
+
+/// How full the surroundings of each particle are, itself included: c_i = sum_j V_j W(x_i - x_j, h), no unit, in the
+/// order of `bins`; `volume` [m^3] likewise, h [m]. On a cubic lattice:
+///   h / spacing   bulk   flat surface   sheet one particle thick   thread of 2 x 2   thread   alone
+///             1   1.00   0.85           0.70                       0.72              0.48     0.32
+///             2   1.00   0.67           0.35                       0.35              0.12     0.04
+std::vector<float> compute_filling(const ParticleBins& bins, std::span<const float> volume, double h);
+
+/// Raises the `volume` that particles of thin features carry into chi, so that drops, threads and sheets keep theirs. A
+/// lone particle has chi = 1/(pi (h/spacing)^3) at most, a thread half as much again: below the iso-value both would
+/// disappear.
+/// 1. V_j *= (0.40/c_j)^(gain/2) where c_j, the `filling` at twice the spacing, is below 0.40. The one law gives lone
+///    particles, pairs, threads and thin sheets their volumes (docs/decisions/0004-marching-cubes.md holds the table)
+///    at h = spacing and iso = 0.5, and leaves flat surfaces as they are.
+/// 2. V_j *= 1.3 iso / chi(x_j) where chi at the particle itself is still below 1.3 iso: so no particle disappears,
+/// whatever h
+///    and iso; the part of a lone particle's drop inside the surface is then wider than a cell diagonal of half a
+///    spacing.
+/// Both are continuous in the positions: nothing pops from frame to frame.
+void strengthen_thin_features(std::span<float> volume, const ParticleBins& bins, std::span<const float> filling,
+                              double h, double iso, double gain);
+
+/// How strongly a vertex may be smoothed, in [0, 1], from the filling at twice the spacing around it: 0 on threads and
+/// drops, which smoothing would pinch off, 1 on flat surfaces. The wide kernel tells a thread from a lone particle that
+/// sticks out of a surface, which should be smoothed away.
+inline float smoothing_strength(float filling) {
+  return std::clamp((filling - 0.15f) / (0.60f - 0.15f), 0.0f, 1.0f);
+}
+
+}  // namespace smelt

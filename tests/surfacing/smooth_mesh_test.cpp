@@ -1,0 +1,94 @@
+#include "surfacing/smooth_mesh.h"
+
+#include "surfacing/marching_cubes.h"
+#include "tests/surfacing/dense_grid.h"
+#include "tests/surfacing/mesh_checks.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace smelt {
+namespace {
+
+/// Two balls of 6 and 3 cells.
+TriangleMesh two_balls() {
+  testing::DenseGrid grid = testing::make_grid({32, 16, 16});
+  for (int k = 0; k < 16; ++k)
+    for (int j = 0; j < 16; ++j)
+      for (int i = 0; i < 32; ++i) {
+        const double big = 6.0 - (Vec3(i, j, k) - Vec3(7.6, 7.3, 7.5)).norm();
+        const double small = 3.0 - (Vec3(i, j, k) - Vec3(22.1, 7.2, 8.4)).norm();
+        grid.at(i, j, k) = static_cast<float>(std::max(0.0, 0.5 + 0.1 * std::max(big, small)));
+      }
+  return extract_iso_surface(testing::make_sparse(grid, {1, 1, 1}), 0.5f);
+}
+
+double volume_beyond(const TriangleMesh& mesh, double x) {
+  TriangleMesh part = mesh;
+  std::erase_if(part.triangles, [&](const auto& t) { return mesh.vertices[t[0]][0] < x; });
+  return compute_volume(part);
+}
+
+TEST(SmoothMesh, KeepsTheVolumeOfEachPiece) {
+  const TriangleMesh mesh = two_balls();
+  ASSERT_EQ(compute_topology(mesh).n_components, 2u);
+  TriangleMesh smooth = mesh;
+  smooth_mesh(smooth, std::vector<float>(mesh.vertices.size(), 1.0f), 30);
+  EXPECT_EQ(testing::find_defect(smooth), "");
+  EXPECT_NEAR(compute_volume(smooth) / compute_volume(mesh), 1.0, 1e-3);
+  EXPECT_NEAR(volume_beyond(smooth, 16.0) / volume_beyond(mesh, 16.0), 1.0, 2e-3);
+}
+
+TEST(SmoothMesh, RemovesNoiseAndKeepsTheShape) {
+  TriangleMesh mesh = two_balls();
+  const Vec3 centre(8.6, 8.3, 8.5);
+  // Every vertex of the big ball is pushed in or out by 0.2 cells, in turn.
+  const TriangleMesh clean = mesh;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    if (mesh.vertices[v][0] < 16.0)
+      mesh.vertices[v] += (v % 2 == 0 ? 0.2 : -0.2) * (mesh.vertices[v] - centre).normalized();
+  smooth_mesh(mesh, std::vector<float>(mesh.vertices.size(), 1.0f), 10);
+  double sum = 0.0, n = 0.0;
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
+    if (mesh.vertices[v][0] > 16.0) continue;
+    const double error = (mesh.vertices[v] - centre).norm() - 6.0;
+    sum += error * error;
+    n += 1.0;
+  }
+  EXPECT_LT(std::sqrt(sum / n), 0.05);
+}
+
+TEST(SmoothMesh, LeavesVerticesOfNoStrengthAndZeroPassesAlone) {
+  const TriangleMesh mesh = two_balls();
+  TriangleMesh same = mesh;
+  smooth_mesh(same, std::vector<float>(mesh.vertices.size(), 1.0f), 0);
+  EXPECT_EQ(same.vertices, mesh.vertices);
+
+  std::vector<float> strength(mesh.vertices.size());
+  for (std::size_t v = 0; v < strength.size(); ++v) strength[v] = mesh.vertices[v][0] < 16.0 ? 1.0f : 0.0f;
+  smooth_mesh(same, strength, 30);
+  std::size_t moved = 0;
+  for (std::size_t v = 0; v < strength.size(); ++v) {
+    if (strength[v] == 0.0f) {
+      ASSERT_EQ(same.vertices[v], mesh.vertices[v]);
+    }
+    moved += same.vertices[v] != mesh.vertices[v];
+  }
+  EXPECT_GT(moved, 100u);
+}
+
+TEST(SmoothMesh, NormalsOfABallPointOutward) {
+  const TriangleMesh mesh = two_balls();
+  const std::vector<Vec3f> normals = compute_vertex_normals(mesh);
+  const Vec3 centre(8.6, 8.3, 8.5);
+  for (std::size_t v = 0; v < normals.size(); ++v) {
+    ASSERT_NEAR(normals[v].norm(), 1.0f, 1e-5f);
+    if (mesh.vertices[v][0] < 16.0) {
+      ASSERT_GT(normals[v].cast<double>().dot((mesh.vertices[v] - centre).normalized()), 0.95);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace smelt

@@ -1,0 +1,121 @@
+#include "surfacing/sparse_field.h"
+
+#include "core/error.h"
+#include "core/sph/kernel.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+
+namespace smelt {
+namespace {
+
+std::vector<Vec3> cubic_lattice(int n, double spacing) {
+  std::vector<Vec3> x;
+  for (int k = 0; k < n; ++k)
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) x.push_back(spacing * Vec3(i, j, k));
+  return x;
+}
+
+TEST(SparseField, ChiEqualsTheBruteForceSum) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> place(-1.0, 1.0), size(0.5, 1.5);
+  const double h = 0.21, cell = 0.09;
+  std::vector<Vec3> x(300);
+  for (Vec3& p : x) p = Vec3(place(random), place(random), place(random)) + Vec3(100.0, -3.0, 0.0);
+  const ParticleBins bins = sort_into_bins(x, 2.0 * h);
+  std::vector<float> volume(x.size());
+  for (float& v : volume) v = static_cast<float>(0.008 * size(random));
+  SparseField field = allocate_field(bins, 2.0 * h, cell, 1e9);
+  compute_chi(field, bins, volume, h);
+
+  const Kernel<3> kernel(h);
+  double largest = 0.0;
+  std::size_t n_positive = 0;
+  for (int k = -16; k <= 16; k += 2)
+    for (int j = -49; j <= -17; ++j)
+      for (int i = 1095; i <= 1127; i += 3) {
+        double exact = 0.0;
+        for (std::size_t p = 0; p < x.size(); ++p)
+          exact += volume[p] * kernel.value((cell * Vec3(i, j, k) - bins.position[p]).norm());
+        largest = std::max(largest, std::abs(exact - field.sample(i, j, k)));
+        n_positive += exact > 0.0;
+      }
+  EXPECT_GT(n_positive, 1000u);
+  EXPECT_LT(largest, 5e-6);
+}
+
+TEST(SparseField, ChiIsOneInsideALattice) {
+  const double spacing = 0.03;
+  const std::vector<Vec3> x = cubic_lattice(14, spacing);
+  for (const double h : {1.0 * spacing, 1.2 * spacing}) {
+    const ParticleBins bins = sort_into_bins(x, 2.0 * h);
+    const std::vector<float> volume(x.size(), static_cast<float>(spacing * spacing * spacing));
+    SparseField field = allocate_field(bins, 2.0 * h, 0.5 * spacing, 1e9);
+    compute_chi(field, bins, volume, h);
+    for (int k = 8; k <= 18; ++k)
+      for (int j = 8; j <= 18; ++j)
+        for (int i = 8; i <= 18; ++i) ASSERT_NEAR(field.sample(i, j, k), 1.0f, 0.02f);
+    EXPECT_EQ(field.sample(-40, 0, 0), 0.0f);
+  }
+}
+
+TEST(SparseField, HoldsEverySampleThatAParticleReachesAndThoseBelow) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<double> place(-3.0, 3.0);
+  std::vector<Vec3> x(40);
+  for (Vec3& p : x) p = Vec3(place(random), place(random), place(random));
+  const double radius = 0.37, cell = 0.11;
+  const SparseField field = allocate_field(sort_into_bins(x, radius), radius, cell, 1e9);
+  for (const Vec3& p : x)
+    for (int k = -4; k <= 4; ++k)
+      for (int j = -4; j <= 4; ++j)
+        for (int i = -4; i <= 4; ++i) {
+          Lattice s;
+          for (int a = 0; a < 3; ++a) s[a] = floor_to_int(p[a] / cell) + std::array{i, j, k}[a];
+          if ((cell * Vec3(s[0], s[1], s[2]) - p).norm() > radius) continue;
+          for (int n = 0; n < 8; ++n)
+            ASSERT_NE(
+                field.find(lattice_key((s[0] - (n & 1)) >> 3, (s[1] - (n >> 1 & 1)) >> 3, (s[2] - (n >> 2)) >> 3)),
+                SparseField::no_block);
+        }
+}
+
+TEST(SparseField, FarParticlesCostNoSpaceBetweenThem) {
+  const std::vector<Vec3> x = {Vec3(0, 0, 0), Vec3(900, -900, 900), Vec3(-900, 900, 0)};
+  const SparseField field = allocate_field(sort_into_bins(x, 0.06), 0.06, 0.015, 1e9);
+  EXPECT_LE(field.n_blocks(), 3u * 27u);
+}
+
+/// The message of the error that an action throws.
+template <typename Action>
+std::string message_of(Action&& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(SparseField, RefusesWhatCannotBeGridded) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
+  const auto sorted = [](const Vec3& odd) {
+    const std::vector<Vec3> x = {Vec3(0, 0, 0), odd};
+    return sort_into_bins(x, 0.1);
+  };
+  for (const double bad : {nan, infinity, -infinity, 1e9})
+    EXPECT_NE(message_of([&] { sorted(Vec3(0, bad, 0)); }).find("particle 1"), std::string::npos);
+
+  // Finer and finer cells about 1000 particles: the error names the memory, and comes at once.
+  const ParticleBins bins = sort_into_bins(cubic_lattice(10, 0.1), 0.2);
+  for (const double cell : {1e-3, 1e-4, 1e-6}) {
+    const std::string message = message_of([&] { allocate_field(bins, 0.2, cell, 1e8); });
+    EXPECT_NE(message.find("GB"), std::string::npos) << message;
+  }
+}
+
+}  // namespace
+}  // namespace smelt
