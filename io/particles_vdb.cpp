@@ -155,6 +155,7 @@ std::vector<Vec3> read_positions(const vp::PointDataGrid& grid,
 }  // namespace
 
 void write_particles(const std::filesystem::path& path, const ParticleFrame& particles) {
+  initialise_openvdb();
   check_sizes(particles);
   const std::vector<std::size_t> order = order_by_id(particles.id);
   const double voxel_size = 4.0 * particles.spacing;

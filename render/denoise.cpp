@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <experimental/simd>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 namespace smelt {
@@ -93,7 +93,6 @@ struct Target {
 /// A neighbour of a pixel: how far off it is in memory, and its weight by distance alone.
 struct Tap {
   std::ptrdiff_t offset;
-  int shift;  ///< in x
   float kernel;
 };
 
@@ -151,7 +150,7 @@ std::span<const Tap> taps_at(std::array<Tap, 25>& taps, int x, int y, int n_pixe
     if (y + j * step < 0 || y + j * step >= height) continue;
     for (int i = -2; i <= 2; ++i) {
       if (x + i * step < 0 || x + n_pixels - 1 + i * step >= width) continue;
-      taps[n++] = {static_cast<std::ptrdiff_t>(j * step) * width + i * step, i * step,
+      taps[n++] = {static_cast<std::ptrdiff_t>(j * step) * width + i * step,
                    spline[static_cast<std::size_t>(i + 2)] * spline[static_cast<std::size_t>(j + 2)]};
     }
   }

@@ -22,7 +22,7 @@ struct EmbreeScene::Handles {
 
 EmbreeScene::EmbreeScene() : handles_(std::make_unique<Handles>()) {
   // One thread builds the hierarchy: two could order its leaves differently from run to run, and so the pictures.
-  handles_->device = rtcNewDevice("threads=1");
+  handles_->device = rtcNewDevice(nullptr);
   handles_->check("opening the ray tracer");
   handles_->scene = rtcNewScene(handles_->device);
   // Robust: no ray may slip through the seam of two triangles.
@@ -67,8 +67,8 @@ bool load(const RayPacket& rays, RTCRay8& out, std::array<int, packet_size>& val
   bool any = false;
   for (std::size_t i = 0; i < packet_size; ++i) {
     const Ray& ray = rays[i];
-    valid[i] = ray.active ? -1 : 0;
-    any = any || ray.active;
+    valid[i] = ray.active && ray.meshes ? -1 : 0;
+    any = any || valid[i] != 0;
     out.org_x[i] = ray.origin.x();
     out.org_y[i] = ray.origin.y();
     out.org_z[i] = ray.origin.z();

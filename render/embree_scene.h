@@ -20,6 +20,7 @@ struct Ray {
   float t_near = 0.0f;
   float t_far = std::numeric_limits<float>::infinity();
   bool active = false;  ///< inactive rays hit nothing
+  bool meshes = true;   ///< false: known to miss all meshes
 };
 
 struct RayHit {

@@ -32,7 +32,7 @@ struct Film {
   Plane3 emission;          ///< and backdrop
   Plane3 normal;            ///< not unit where surfaces share a pixel; zero where there is none
   Plane3 position;          ///< relative to the eye [m]
-  Plane kind;               ///< share of the pixel that is fluid or collider, 1 to 2; floor 0
+  Plane kind;               ///< mean over the samples of 0: floor or nothing, 1: fluid, 2: collider
   Plane light_variance;     ///< of the mean luminance of `light`
   Plane specular_variance;  ///< of the mean luminance of `specular`
 

@@ -133,6 +133,7 @@ std::array<Entry, packet_size> scatter_inside(const ShadingScene& scene, const S
     probe.active = r > scene.ray_offset();
     probes[i] = probe;
   }
+  if (std::none_of(probes.begin(), probes.end(), [](const Ray& probe) { return probe.active; })) return entries;
   const HitPacket hits = scene.intersect_meshes(probes);
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!probes[i].active || hits[i].geometry != 0) continue;
@@ -267,6 +268,7 @@ std::array<SampleRadiance, packet_size> trace_packet(const ShadingScene& scene, 
   for (std::size_t i = 0; i < samples.size(); ++i) {
     rays[i].direction = samples[i].direction;
     rays[i].active = true;
+    rays[i].meshes = samples[i].meshes;
   }
   const SurfacePacket points = scene.intersect(rays, true);
   bool any_coat = false;

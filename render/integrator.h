@@ -13,6 +13,7 @@ namespace smelt {
 struct CameraSample {
   Vec3f direction = Vec3f::UnitZ();
   PixelSampler sampler{0, 0, 0, 1, 0};
+  bool meshes = true;  ///< false: the ray is known to miss all meshes
 };
 
 /// What one camera ray saw, in parts: radiance is albedo * light + specular + emission, all linear RGB.

@@ -25,7 +25,7 @@ void for_each_tile(const Film& film, const Body& body) {
 /// What the ray through the middle of a pixel meets.
 struct Glimpse {
   SurfaceKind kind = SurfaceKind::none;
-  bool faded = false;  ///< floor, but nothing of it shows
+  float fade = 0.0f;  ///< of the floor into the backdrop; 1: nothing of it shows
   Vec3f normal = Vec3f::Zero();
   Vec3f position = Vec3f::Zero();
 };
@@ -45,7 +45,7 @@ std::vector<Glimpse> glance(const ShadingScene& scene, const CameraFrame& camera
         for (int i = 0; i < n; ++i) {
           const SurfacePoint& point = points[static_cast<std::size_t>(i)];
           Glimpse& glimpse = glimpses[film.index(x + i, y)];
-          glimpse = {point.kind, point.fade >= 1.0f, point.normal, point.position};
+          glimpse = {point.kind, point.fade, point.normal, point.position};
         }
       }
     }
@@ -70,6 +70,12 @@ bool differ(const Glimpse& a, const Glimpse& b, float pixel_angle) {
 /// A silhouette is judged by its staircase, not by its noise.
 constexpr int least_silhouette_samples = 16;
 
+/// Noise fades with the floor, so fewer samples serve there.
+int plain_samples(const Glimpse& here, int samples) {
+  if (here.kind == SurfaceKind::none) return 1;
+  return std::max(1, static_cast<int>(std::ceil(static_cast<float>(samples) * (1.0f - here.fade))));
+}
+
 int samples_at(const std::vector<Glimpse>& glimpses, const Film& film, int x, int y, float pixel_angle, int samples) {
   const Glimpse& here = glimpses[film.index(x, y)];
   for (int j = std::max(0, y - 1); j <= std::min(film.height - 1, y + 1); ++j) {
@@ -77,7 +83,7 @@ int samples_at(const std::vector<Glimpse>& glimpses, const Film& film, int x, in
       if (differ(here, glimpses[film.index(i, j)], pixel_angle)) return std::max(samples, least_silhouette_samples);
     }
   }
-  return here.faded || here.kind == SurfaceKind::none ? 1 : samples;
+  return plain_samples(here, samples);
 }
 
 /// Whether any pixel of the tile or beside it shows a mesh.
@@ -141,13 +147,15 @@ class TileTracer {
   TileTracer(const ShadingScene& scene, const CameraFrame& camera, std::uint32_t seed)
       : scene_(scene), camera_(camera), seed_(seed) {}
 
-  void add_pixel(std::size_t index, int x, int y, int n_samples) {
+  /// `meshes`: whether any mesh can be in the pixel.
+  void add_pixel(std::size_t index, int x, int y, int n_samples, bool meshes) {
     pixels_.push_back({index, n_samples, {}});
     for (int s = 0; s < n_samples; ++s) {
       CameraSample sample;
       sample.sampler = PixelSampler(x, y, s, n_samples, seed_);
       const Sample2 place = n_samples == 1 ? Sample2{0.5f, 0.5f} : sample.sampler.draw(0);
       sample.direction = camera_.direction(x + static_cast<double>(place.u), y + static_cast<double>(place.v));
+      sample.meshes = meshes;
       packet_[n_waiting_] = sample;
       owner_[n_waiting_] = pixels_.size() - 1;
       if (++n_waiting_ == packet_size) flush();
@@ -198,12 +206,13 @@ Film sample_film(const ShadingScene& scene, const RenderOptions& options, std::i
       for (int x = tile.cols().begin(); x < tile.cols().end(); ++x) {
         const std::size_t i = film.index(x, y);
         const Glimpse& seen = glimpses[i];
-        const bool bare = seen.kind == SurfaceKind::none || seen.faded;
+        const bool bare = seen.kind == SurfaceKind::none || seen.fade >= 1.0f;
         if (!any_mesh && bare) {
           write_pixel(film.emission, i, backdrop_radiance(scene.view().backdrop, camera.direction(x + 0.5, y + 0.5)));
         } else {
-          tracer.add_pixel(i, x, y,
-                           any_mesh ? samples_at(glimpses, film, x, y, pixel_angle, options.samples) : options.samples);
+          const int n = any_mesh ? samples_at(glimpses, film, x, y, pixel_angle, options.samples)
+                                 : plain_samples(seen, options.samples);
+          tracer.add_pixel(i, x, y, n, any_mesh);
         }
       }
     }

@@ -53,13 +53,14 @@ constexpr std::uint32_t owen_scramble_reversed(std::uint32_t x, std::uint32_t se
   return x;
 }
 
-/// Second dimension of the Sobol sequence, bit-reversed: the Pascal matrix modulo 2 applied to the index [Ahmed 2024].
+/// Second dimension of the Sobol sequence, bit-reversed: the Pascal matrix modulo 2 applied to the index, as a product
+/// of one factor per power of two [Ahmed 2024].
 constexpr std::uint32_t pascal_transform(std::uint32_t x) {
-  x ^= x << 16;
-  x ^= (x & 0x00ff00ffU) << 8;
-  x ^= (x & 0x0f0f0f0fU) << 4;
-  x ^= (x & 0x33333333U) << 2;
-  x ^= (x & 0x55555555U) << 1;
+  x ^= x >> 16;
+  x ^= (x & 0xff00ff00U) >> 8;
+  x ^= (x & 0xf0f0f0f0U) >> 4;
+  x ^= (x & 0xccccccccU) >> 2;
+  x ^= (x & 0xaaaaaaaaU) >> 1;
   return x;
 }
 

@@ -166,7 +166,7 @@ RenderScene default_scene(const Box3& bounds) {
   key.position = at(-2.3, 2.7, 1.9);
   key.target = at(0.0, 0.4, 0.0);
   key.width = key.height = 1.7 * size;
-  key.radiance = Vec3f(12.6f, 11.8f, 10.7f);
+  key.radiance = Vec3f(11.8f, 11.1f, 10.2f);
   AreaLight rim;
   rim.position = at(1.3, 2.6, -3.3);
   rim.target = at(0.0, 0.55, 0.0);

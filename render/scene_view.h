@@ -59,8 +59,8 @@ struct Wax {
 /// The look of the fluid: a rough dielectric coat over a diffusing body. Between `cold_K` and `hot_K` the two blend
 /// smoothly; a fluid without temperatures is cold.
 struct Look {
-  Wax cold{{0.84f, 0.71f, 0.50f}, 0.55f, 0.008f};
-  Wax hot{{0.80f, 0.24f, 0.03f}, 0.12f, 0.030f};
+  Wax cold{{0.81f, 0.70f, 0.49f}, 0.55f, 0.008f};
+  Wax hot{{0.68f, 0.215f, 0.018f}, 0.10f, 0.030f};
   Vec3f scatter_tint{1.0f, 0.55f,
                      0.30f};  ///< scatter distance of red, green and blue, relative to `scatter_m`, in (0, 1]
   float specular = 1.0f;      ///< strength of the coat's reflection: 1 physical, 0 none; in [0, 1]

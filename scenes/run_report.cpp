@@ -4,6 +4,7 @@
 #include "io/atomic_file.h"
 #include "scenes/version.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

@@ -22,7 +22,7 @@ struct RunSummary {
   double simulate_seconds = 0.0;
   double surface_seconds = 0.0;
   double render_seconds = 0.0;
-  std::optional<std::filesystem::path> film;  ///< where ffmpeg is installed and all frames are there
+  std::optional<std::filesystem::path> film = std::nullopt;  ///< where ffmpeg is installed and all frames are there
 };
 
 /// Simulates, surfaces and renders. Without `resume`, an earlier result in the folder is first moved aside to <folder>.1, .2, ...

@@ -9,9 +9,9 @@ namespace smelt {
 
 /// Smooths the vertices of a closed mesh in place and restores the volume of each connected piece.
 ///
-/// One pass of G is `passes` Jacobi steps x_v += 0.8 s_v (mean of neighbours - x_v), s_v = strength[v] in [0, 1]. Used
-/// alone, G shrinks everything; with Tukey's twicing, x' = G x + G (x - G x), a wave that G damps by g is damped by 1 -
-/// (1 - g)^2: noise as before, but shapes larger than the noise keep their size to second order. What volume is lost
+/// One G is `passes` Jacobi steps x_v += 0.8 s_v (mean of neighbours - x_v), s_v = strength[v] in [0, 1]. Used alone, G
+/// shrinks everything; with Tukey's twicing, x' = G x + G (x - G x), a wave that G damps by g is damped by 1 - (1 -
+/// g)^2: noise as before, but shapes larger than the noise keep their size to second order. What volume is lost
 /// nevertheless is put back piece by piece, by an equal shift of its vertices along their normals, weighted with their
 /// strength. Connectivity is kept. `strength` has one entry per vertex.
 void smooth_mesh(TriangleMesh& mesh, std::span<const float> strength, int passes);

@@ -30,11 +30,11 @@ std::vector<float> compute_filling(const ParticleBins& bins, std::span<const flo
 void strengthen_thin_features(std::span<float> volume, const ParticleBins& bins, std::span<const float> filling,
                               double h, double iso, double gain);
 
-/// How strongly a vertex may be smoothed, in [0, 1], from the filling at twice the spacing around it: 0 on threads and
-/// drops, which smoothing would pinch off, 1 on flat surfaces. The wide kernel tells a thread from a lone particle that
-/// sticks out of a surface, which should be smoothed away.
-inline float smoothing_strength(float filling) {
-  return std::clamp((filling - 0.15f) / (0.60f - 0.15f), 0.0f, 1.0f);
+/// How strongly the surface near a particle may be smoothed, in [0, 1], from its filling at h = 2 spacing: 0 on threads
+/// and drops, which smoothing would pinch off, 1 on flat surfaces. The wide kernel tells a thread from a lone particle
+/// that sticks out of a surface, which should be smoothed away.
+inline float smoothing_strength(float wide_filling) {
+  return std::clamp((wide_filling - 0.15f) / (0.60f - 0.15f), 0.0f, 1.0f);
 }
 
 }  // namespace smelt

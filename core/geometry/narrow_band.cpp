@@ -1,7 +1,7 @@
 #include "core/geometry/narrow_band.h"
 
 #include "core/error.h"
-#include "core/geometry/inside_test.h"
+#include "core/geometry/inside.h"
 
 #include <Eigen/Geometry>
 #include <tbb/parallel_for.h>

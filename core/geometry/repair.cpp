@@ -4,6 +4,7 @@
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/border.h>
+#include <CGAL/Polygon_mesh_processing/connected_components.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/orientation.h>
 #include <CGAL/Polygon_mesh_processing/polygon_mesh_to_polygon_soup.h>
@@ -116,6 +117,23 @@ double relative_thickness(const TriangleMesh& mesh) {
   return std::sqrt(std::max(0.0, solver.eigenvalues()[0]) / solver.eigenvalues()[2]);
 }
 
+/// Refuses a closed surface none of whose parts holds any volume. Parts wound against one another do not cancel.
+void check_volume(CgalMesh& mesh) {
+  auto part_of = mesh.add_property_map<CgalMesh::Face_index, std::size_t>("f:part", 0).first;
+  std::vector<double> six_volumes(PMP::connected_components(mesh, part_of), 0.0);
+  double reach = 0.0;
+  for (const auto f : mesh.faces()) {
+    const auto [a, b, c] = corners_of(mesh, f);
+    const Kernel::Point_3& origin = mesh.point(*mesh.vertices().begin());
+    six_volumes[part_of[f]] += CGAL::determinant(a - origin, b - origin, c - origin);
+    reach = std::max(reach, CGAL::squared_distance(origin, a));
+  }
+  mesh.remove_property_map(part_of);
+  const bool solid = std::any_of(six_volumes.begin(), six_volumes.end(),
+                                 [&](double v) { return std::abs(v) > 1e-12 * std::pow(reach, 1.5); });
+  if (!solid) fail("the mesh is closed but bounds no volume (a sheet folded onto itself?); give it a thickness");
+}
+
 /// "1 hole", "3 holes".
 std::string counted(std::size_t n, std::string_view noun) {
   return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
@@ -201,8 +219,6 @@ void validate_mesh(const TriangleMesh& mesh) {
          counted(mesh.triangles.size(), "face"));
   if (relative_thickness(mesh) < 1e-6)
     fail("the mesh is flat: all its vertices lie in one plane, so it bounds no volume; give it a thickness");
-  if (compute_topology(mesh).n_boundary_edges == 0 && std::abs(compute_volume(mesh)) < 1e-12 * width * width * width)
-    fail("the mesh has no open edge but bounds no volume (a sheet folded onto itself?); give it a thickness");
 }
 
 RepairedMesh repair(const TriangleMesh& mesh, double spacing) {
@@ -214,6 +230,7 @@ RepairedMesh repair(const TriangleMesh& mesh, double spacing) {
   MeshReport& report = result.report;
   report.topology = compute_topology(mesh);
   CgalMesh cgal = to_cgal(mesh);
+  if (report.topology.n_boundary_edges == 0) check_volume(cgal);
   report.n_self_intersections = count_self_intersections(cgal);
   report.self_intersects = report.n_self_intersections > 0;
   const std::string faults = describe_faults(report);

@@ -28,14 +28,13 @@ void validate_mesh(const TriangleMesh& mesh);
 /// A closed mesh, wound outward and free of self-intersections, that bounds the same body. In this order:
 ///  1. a sound mesh is handed back unchanged;
 ///  2. faces wound inward, or against their neighbours, are turned;
-///  3. holes of a manifold mesh are filled, which leaves every other face where it is;
-///  4. what still is open, non-manifold or self-intersecting is wrapped (CGAL alpha_wrap_3 [Portaneri 2022]): the wrap
-///  follows the
-///     surface at a distance of at most `spacing`/20 and bridges gaps narrower than two spacings; where it crept in
-///     through a wider gap and became a shell, the gap it may bridge is doubled until the wrap is solid.
+///  3. holes are filled, which leaves every other face where it is;
+///  4. what still is open or self-intersecting is wrapped (CGAL alpha_wrap_3 [Portaneri 2022]): the wrap follows the
+///     surface at a distance of `spacing`/20 and bridges gaps narrower than two spacings. Where it crept in through a
+///     wider gap and became a shell, the gap it may bridge is doubled until the wrap is solid.
 /// `spacing` [m] is the distance between particles to come: details below it cannot be simulated and need not survive.
-/// The volume that wrapping adds is in the report's description. Throws Error as validate_mesh does, and where nothing
-/// solid comes out.
+/// Wrapping adds about area * spacing/20 to the volume; the report's description gives the volume reached.
+/// Throws Error as validate_mesh does, and where nothing solid comes out.
 RepairedMesh repair(const TriangleMesh& mesh, double spacing);
 
 }  // namespace smelt

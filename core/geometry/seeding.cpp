@@ -1,7 +1,7 @@
 #include "core/geometry/seeding.h"
 
 #include "core/error.h"
-#include "core/geometry/inside_test.h"
+#include "core/geometry/inside.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>

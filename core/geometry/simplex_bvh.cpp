@@ -25,7 +25,7 @@ struct SimplexBvh<Dim>::Index {
 namespace {
 
 void build_embree_scene(const std::vector<Simplex<3>>& triangles, RTCDevice& device, RTCScene& scene) {
-  device = rtcNewDevice("threads=1");
+  device = rtcNewDevice(nullptr);
   if (!device) throw InternalError("Embree refused to make a device");
   scene = rtcNewScene(device);
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);

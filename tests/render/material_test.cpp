@@ -96,10 +96,10 @@ TEST(CoatedDiffuse, IsReciprocal) {
 
 TEST(Look, BlendsFromColdToHot) {
   const Look look;
-  EXPECT_EQ(blend_look(look, 250.0f).roughness, look.cold.roughness);
-  EXPECT_EQ(blend_look(look, 500.0f).roughness, look.hot.roughness);
+  EXPECT_FLOAT_EQ(blend_look(look, 250.0f).roughness, look.cold.roughness);
+  EXPECT_FLOAT_EQ(blend_look(look, 500.0f).roughness, look.hot.roughness);
   EXPECT_NEAR(blend_look(look, 350.0f).roughness, 0.5f * (look.cold.roughness + look.hot.roughness), 1e-6f);
-  EXPECT_EQ(blend_look(look, std::numeric_limits<float>::quiet_NaN()).scatter_m, look.cold.scatter_m);
+  EXPECT_FLOAT_EQ(blend_look(look, std::numeric_limits<float>::quiet_NaN()).scatter_m, look.cold.scatter_m);
 }
 
 }  // namespace

@@ -110,13 +110,14 @@ TEST(Floor, PenumbraHasItsWidth) {
   scene.colliders.resize(1);
   scene.colliders[0].mesh = make_quad(Vec3(0.0, 1.0, -50.0), Vec3(50.0, 0.0, 0.0), Vec3(0.0, 0.0, 100.0));
   const Film film = trace({}, scene, 64);
-  const float lit = film.light[0][film.index(20, 1)];
+  const auto share_at = [&](int x) {
+    const double from_middle = (x + 0.5 - 200.0) * 0.005;  // the unblocked lamp falls off as cos^4
+    return film.light[0][film.index(x, 1)] * std::pow(9.0 + from_middle * from_middle, 2.0);
+  };
+  const double lit = share_at(20);
   int n_between = 0;
-  for (int x = 0; x < 400; ++x) {
-    const float share = film.light[0][film.index(x, 1)] / lit;
-    n_between += share > 0.03f && share < 0.95f ? 1 : 0;
-  }
-  EXPECT_NEAR(n_between * 0.005, 0.5, 0.08);  // 1.0 m lamp, 1 m up of 3: half a metre
+  for (int x = 0; x < 400; ++x) n_between += share_at(x) > 0.05 * lit && share_at(x) < 0.95 * lit ? 1 : 0;
+  EXPECT_NEAR(n_between * 0.005, 0.9 * 0.5, 0.03);  // lamp of 1 m, blind 1 m up of 3: half a metre from 0 to 1
 }
 
 RenderScene small_default_scene(const SurfaceMesh& fluid) {

@@ -22,6 +22,14 @@ bool is_net(const std::vector<Sample2>& points) {
   return true;
 }
 
+TEST(Sobol, SecondDimensionFollowsItsDirectionNumbers) {
+  std::uint32_t direction = 0x80000000U;
+  for (int k = 0; k < 32; ++k) {
+    EXPECT_EQ(reverse_bits(pascal_transform(1U << k)), direction) << k;
+    direction ^= direction >> 1;
+  }
+}
+
 TEST(PixelSampler, NeighbouringPixelsShareANet) {
   for (const std::uint32_t dimension : {0U, 1U, 7U}) {
     std::vector<Sample2> pixel, square;
@@ -65,7 +73,7 @@ TEST(Sampling, CosineHemisphereHasItsMoments) {
     z2 += d.z() * d.z();
     x2 += d.x() * d.x();
   }
-  EXPECT_NEAR(z / (n * n), 2.0 / 3.0, 1e-4);  // integral of cos^2 / pi
+  EXPECT_NEAR(z / (n * n), 2.0 / 3.0, 3e-4);  // integral of cos^2 / pi
   EXPECT_NEAR(z2 / (n * n), 0.5, 1e-4);
   EXPECT_NEAR(x2 / (n * n), 0.25, 1e-4);
 }

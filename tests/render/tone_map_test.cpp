@@ -22,7 +22,7 @@ TEST(Quantize, RoundsAndDithersByHalfAStep) {
   EXPECT_EQ(quantize_srgb(Vec3f::Constant(level_100), 0.9f)[1], 100);
   const float level_100_4 = linear_from_srgb(100.4f / 255.0f);
   EXPECT_EQ(quantize_srgb(Vec3f::Constant(level_100_4), 0.9f)[2], 101);
-  EXPECT_EQ(quantize_srgb(Vec3f(-1.0f, 2.0f, 1.0f), 1.0f), (std::array<std::uint8_t, 3>{0, 255, 255}));
+  EXPECT_EQ(quantize_srgb(Vec3f(-1.0f, 2.0f, 1.0f), 0.9f), (std::array<std::uint8_t, 3>{0, 255, 255}));
 }
 
 TEST(ToneMap, KeepsWhatDisplaysCanShowAndCompressesTheRest) {

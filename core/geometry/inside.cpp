@@ -1,4 +1,4 @@
-#include "core/geometry/inside_test.h"
+#include "core/geometry/inside.h"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 

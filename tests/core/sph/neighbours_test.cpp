@@ -1,0 +1,77 @@
+#include "core/sph/neighbours.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <random>
+
+namespace smelt {
+namespace {
+
+template <int Dim>
+std::vector<Vec<Dim>> random_points(std::size_t n, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  std::vector<Vec<Dim>> points(n);
+  for (auto& x : points)
+    for (int a = 0; a < Dim; ++a) x[a] = uniform(random);
+  return points;
+}
+
+template <int Dim>
+void expect_all_pairs(std::vector<Vec<Dim>> points, double radius) {
+  std::vector<std::int32_t> id(points.size());
+  std::iota(id.begin(), id.end(), 0);
+  const auto order = compute_cell_order<Dim>(points, id, radius);
+  std::vector<Vec<Dim>> sorted;
+  for (const auto i : order) sorted.push_back(points[i]);
+  NeighbourLists lists;
+  build_neighbour_lists<Dim>(sorted, radius, radius, 8, lists);
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    std::vector<std::int32_t> expected;
+    for (std::size_t j = 0; j < sorted.size(); ++j)
+      if (j != i && (sorted[i] - sorted[j]).norm() < radius) expected.push_back(static_cast<std::int32_t>(j));
+    const auto row = lists.row(i);
+    std::vector<std::int32_t> found(row.begin(), row.end());
+    std::sort(found.begin(), found.end());
+    ASSERT_EQ(found, expected) << "particle " << i;
+    ASSERT_EQ(lists.padded[i] % 8, 0);
+    for (int k = lists.count[i]; k < lists.padded[i]; ++k)
+      ASSERT_EQ(lists.index[lists.begin[i] + k], static_cast<std::int32_t>(i)) << "rows are padded with the particle itself";
+  }
+}
+
+TEST(Neighbours, MatchesBruteForceIn1D) { expect_all_pairs<1>(random_points<1>(300, 1), 0.05); }
+TEST(Neighbours, MatchesBruteForceIn2D) { expect_all_pairs<2>(random_points<2>(800, 2), 0.17); }
+TEST(Neighbours, MatchesBruteForceIn3D) { expect_all_pairs<3>(random_points<3>(1500, 3), 0.31); }
+TEST(Neighbours, OneParticleHasNone) { expect_all_pairs<3>({Vec3(1.0, 2.0, 3.0)}, 0.5); }
+TEST(Neighbours, CoincidentParticlesSeeEachOther) { expect_all_pairs<3>({Vec3(1, 2, 3), Vec3(1, 2, 3), Vec3(1, 2, 3.1)}, 0.5); }
+
+TEST(Neighbours, FarClustersNeedNoDenseGrid) {
+  auto points = random_points<3>(100, 4);
+  for (int k = 0; k < 50; ++k) points[k] += Vec3(1e5, -1e5, 1e5);
+  expect_all_pairs<3>(points, 0.3);
+}
+
+TEST(Neighbours, OrderDependsOnPositionsAndIdsOnly) {
+  const auto points = random_points<3>(500, 5);
+  std::vector<std::int32_t> id(points.size());
+  std::iota(id.begin(), id.end(), 0);
+  const auto order = compute_cell_order<3>(points, id, 0.4);
+  std::vector<std::int32_t> shuffle = id;
+  std::shuffle(shuffle.begin(), shuffle.end(), std::mt19937(6));
+  std::vector<Vec3> shuffled_points;
+  for (const auto i : shuffle) shuffled_points.push_back(points[i]);
+  const auto shuffled_order = compute_cell_order<3>(shuffled_points, shuffle, 0.4);
+  for (std::size_t k = 0; k < id.size(); ++k) ASSERT_EQ(shuffle[shuffled_order[k]], order[k]);
+}
+
+TEST(Neighbours, RefusesWhatNoGridCanHold) {
+  std::vector<Vec3> points = {Vec3::Zero(), Vec3(1e12, 0, 0)};
+  const std::vector<std::int32_t> id = {0, 1};
+  EXPECT_THROW(compute_cell_order<3>(points, id, 1e-3), std::logic_error);
+}
+
+}  // namespace
+}  // namespace smelt

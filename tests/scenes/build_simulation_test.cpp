@@ -1,0 +1,89 @@
+#include "scenes/build_simulation.h"
+
+#include "core/error.h"
+#include "scenes/scene_reader.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+namespace smelt {
+namespace {
+
+Scene bunny_scene(const std::vector<std::string>& overrides = {}) {
+  return read_scene(std::filesystem::path(SMELT_SOURCE_DIR) / "scenes/melting_bunny.toml", overrides);
+}
+
+TEST(BuildSimulation, BunnyHasTheCountAndTheMass) {
+  const SimulationSetup setup = build_simulation(bunny_scene());
+  EXPECT_NEAR(static_cast<double>(setup.particles.size()), 10188.0, 0.01 * 10188.0);
+  const double mass = setup.particles.size() * setup.parameters.particle_volume * setup.materials[0].density;
+  EXPECT_NEAR(mass / (900.0 * 0.194288), 1.0, 1e-3);
+  EXPECT_TRUE(setup.warnings.empty());
+}
+
+TEST(BuildSimulation, TemperatureRunsFromBottomToTop) {
+  const SimulationSetup setup = build_simulation(bunny_scene({"particles.count=500"}));
+  for (std::size_t i = 0; i < setup.particles.size(); ++i) {
+    const double expected = 300.0 + 100.0 * setup.particles.position[i][1] / setup.body_bounds.extent()[1];
+    ASSERT_NEAR(setup.particles.temperature[i], expected, 1e-9);
+  }
+}
+
+TEST(BuildSimulation, PlacementScalesTurnsAndStands) {
+  const SimulationSetup setup =
+      build_simulation(bunny_scene({"particles.count=500", "body.0.scale=0.2", "body.0.rotate_deg=[0,0,90]", "body.0.stand_at_y_m=1.5"}));
+  EXPECT_NEAR(setup.body_bounds.lower[1], 1.5, 1e-12);
+  // Turned by 90 degrees about z, its length along x is now its height.
+  EXPECT_NEAR(setup.body_bounds.extent()[1], 0.2 * (4.94885 + 4.958475), 1e-5);
+}
+
+TEST(BuildSimulation, BodiesShareTheCountByVolume) {
+  Scene scene = bunny_scene({"particles.count=3000"});
+  scene.bodies.push_back(scene.bodies[0]);
+  scene.bodies[1].placement.scale = 0.2;
+  scene.bodies[1].placement.translate = Vec3(3, 0, 0);
+  const SimulationSetup setup = build_simulation(scene);
+  const auto n_small = std::count_if(setup.particles.position.begin(), setup.particles.position.end(), [](const Vec3& x) { return x[0] < 1.5; });
+  EXPECT_NEAR(static_cast<double>(n_small), 3000.0 / 9.0, 0.02 * 3000.0 / 9.0);
+  EXPECT_NEAR(static_cast<double>(setup.particles.size()), 3000.0, 30.0);
+}
+
+TEST(BuildSimulation, RefusesABodyUnderTheGround) {
+  Scene scene = bunny_scene({"body.0.stand_at_y_m=-0.2"});
+  try {
+    build_simulation(scene);
+    FAIL() << "it was accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("0.2 m below the ground"), std::string::npos) << error.what();
+  }
+}
+
+TEST(BuildSimulation, BrokenMeshesAreMendedWithAWarningOrRefused) {
+  Scene scene = bunny_scene({"particles.count=800"});
+  scene.bodies[0].placement.scale = 1.0;
+  scene.bodies[0].mesh = "assets/bad/open_box.obj";
+  const SimulationSetup setup = build_simulation(scene);
+  ASSERT_EQ(setup.warnings.size(), 1u);
+  EXPECT_NE(setup.warnings[0].find("open_box.obj"), std::string::npos);
+  for (const char* bad : {"assets/bad/empty.obj", "assets/bad/flat.obj", "assets/bad/nan.obj"}) {
+    scene.bodies[0].mesh = bad;
+    try {
+      build_simulation(scene);
+      ADD_FAILURE() << bad << " was accepted";
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find(bad), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(BuildSimulation, NewtonianScenesNeedNoRelaxedStress) {
+  const SimulationSetup setup = build_simulation(
+      bunny_scene({"particles.count=500", "material.0.viscosity={law=\"newtonian\", viscosity_Pa_s={cold=10.0,hot=1.0}}"}));
+  EXPECT_EQ(setup.parameters.shear_wave_speed, 0.0);
+  EXPECT_EQ(setup.materials[0].rheology.yield_stress.cold, 0.0);
+  EXPECT_EQ(setup.materials[0].rheology.consistency.hot, 1.0);
+}
+
+}  // namespace
+}  // namespace smelt

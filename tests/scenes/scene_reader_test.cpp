@@ -1,0 +1,184 @@
+#include "scenes/scene_reader.h"
+
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "scenes/nearest_word.h"
+#include "scenes/scene_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <string>
+
+namespace smelt {
+namespace {
+
+const char* const good_scene = R"(
+[shot]
+name = "test"
+frames = 10
+
+[particles]
+count = 100
+
+[[material]]
+name = "wax"
+density_kg_m3 = 900
+viscosity = { law = "smd", yield_stress_Pa = 50.0, consistency_Pa_sn = { cold = 20.0, hot = 2.0 }, index = 0.5, jump_number = { cold = 150.0, hot = 15.0 } }
+heat = { diffusivity_m2_s = 1e-3, cold_K = 300.0, hot_K = 400.0 }
+
+[[body]]
+mesh = "assets/bunny.obj"
+material = "wax"
+temperature_K = { bottom = 300.0, top = 400.0 }
+
+[[collider]]
+mesh = "ground"
+)";
+
+std::filesystem::path write_scene_file(const std::string& text) {
+  const auto path = std::filesystem::path(testing::TempDir()) / "scene_reader_test.toml";
+  std::ofstream(path) << text;
+  return path;
+}
+
+std::string replaced(std::string text, const std::string& from, const std::string& to) {
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+std::string error_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+  try {
+    read_scene(write_scene_file(text), overrides);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+void expect_error(const std::string& text, const std::string& where, const std::string& what) {
+  const std::string error = error_of(text);
+  EXPECT_NE(error.find(where), std::string::npos) << "looked for \"" << where << "\" in:\n" << error;
+  EXPECT_NE(error.find(what), std::string::npos) << "looked for \"" << what << "\" in:\n" << error;
+}
+
+TEST(SceneReader, ReadsWhatIsThereAndDefaultsTheRest) {
+  const Scene scene = read_scene(write_scene_file(good_scene));
+  EXPECT_EQ(scene.shot.name, "test");
+  EXPECT_EQ(scene.shot.frames, 10);
+  EXPECT_EQ(scene.shot.fps, 24.0);
+  EXPECT_EQ(*scene.particles.count, 100);
+  ASSERT_EQ(scene.materials.size(), 1u);
+  EXPECT_EQ(scene.materials[0].viscosity.yield_stress->cold, 50.0);
+  EXPECT_EQ(scene.materials[0].viscosity.yield_stress->hot, 50.0);
+  EXPECT_EQ(scene.materials[0].viscosity.consistency->hot, 2.0);
+  EXPECT_EQ(scene.materials[0].heat->hot, 400.0);
+  EXPECT_EQ(scene.bodies[0].temperature->top, 400.0);
+  EXPECT_EQ(scene.camera.width, 1280);
+}
+
+TEST(SceneReader, UnknownKeyNamesTheNearest) {
+  expect_error(replaced(good_scene, "frames = 10", "frames = 10\nfpss = 25"), "scene_reader_test.toml:5: shot.fpss: unknown key",
+               "did you mean `fps`?");
+  expect_error(replaced(good_scene, "density_kg_m3 = 900", "density_kg_m3 = 900\ndensity = 900"), ":12: material.0.density: unknown key",
+               "did you mean `density_kg_m3`?");
+  expect_error(std::string(good_scene) + "[graviti]\n", "graviti: unknown key", "did you mean `gravity`?");
+}
+
+TEST(SceneReader, WrongTypeMissingKeyAndRange) {
+  expect_error(replaced(good_scene, "frames = 10", "frames = \"ten\""), ":4: shot.frames", "must be a whole number from 1 and up to 100000, is a text");
+  expect_error(replaced(good_scene, "frames = 10", ""), ":2: shot.frames", "missing: number of frames");
+  expect_error(replaced(good_scene, "frames = 10", "frames = 0"), ":4: shot.frames", "is 0");
+  expect_error(replaced(good_scene, "index = 0.5", "index = 1.5"), "material.0.viscosity.index", "above 0 and up to 1, is 1.5");
+  expect_error(replaced(good_scene, "density_kg_m3 = 900", "density_kg_m3 = nan"), ":11: material.0.density_kg_m3", "is nan");
+  expect_error(replaced(good_scene, "law = \"smd\"", "law = \"smud\""), "viscosity.law", "\"smud\" is none of smd, newtonian, inviscid");
+  expect_error(replaced(good_scene, "{ bottom = 300.0, top = 400.0 }", "{ bottom = 300.0 }"), "temperature_K.top", "missing");
+}
+
+TEST(SceneReader, ContradictionsAndNames) {
+  expect_error(replaced(good_scene, "count = 100", "count = 100\nspacing_m = 0.1"), ":8: particles.spacing_m", "not both");
+  expect_error(replaced(good_scene, "count = 100", ""), ":6: particles.count", "give count or spacing_m");
+  expect_error(replaced(good_scene, "material = \"wax\"", "material = \"wacks\""), ":17: body.0.material", "there is no [[material]] named \"wacks\"");
+  expect_error(replaced(good_scene, "assets/bunny.obj", "assets/bunni.obj"), ":16: body.0.mesh", "there is no file");
+  expect_error(replaced(good_scene, "index = 0.5", "index = 0.5, rest_viscosity_Pa_s = 5.0"), "rest_viscosity_Pa_s", "not both");
+  expect_error(replaced(good_scene, "hot_K = 400.0", "hot_K = 300.0"), "heat.hot_K", "must be above cold_K = 300");
+  expect_error(replaced(good_scene, "heat = {", "# heat = {"), "temperature_K", "has no heat");
+}
+
+TEST(SceneReader, ReportsAllErrorsAtOnceInTheOrderOfTheFile) {
+  std::string bad = replaced(good_scene, "frames = 10", "frames = -1\ncolour = 3");
+  bad = replaced(bad, "material = \"wax\"", "material = \"lava\"");
+  bad = replaced(bad, "count = 100", "count = 1.5");
+  const std::string error = error_of(bad);
+  EXPECT_EQ(error.find("4 errors in"), 0u) << error;
+  const std::size_t a = error.find("shot.frames"), b = error.find("shot.colour"), c = error.find("particles.count"), d = error.find("body.0.material");
+  EXPECT_LT(a, b);
+  EXPECT_LT(b, c);
+  EXPECT_LT(c, d);
+  EXPECT_NE(d, std::string::npos);
+}
+
+TEST(SceneReader, SyntaxErrorsHaveLineAndColumn) {
+  const std::string error = error_of("[shot]\nname = \"x\nframes = 1\n");
+  EXPECT_NE(error.find("scene_reader_test.toml:2:"), std::string::npos) << error;
+  EXPECT_NE(error.find("not valid TOML"), std::string::npos) << error;
+}
+
+TEST(SceneReader, OverridesFromTheCommandLine) {
+  const Scene scene = read_scene(write_scene_file(good_scene),
+                                 {"shot.frames=3", "body.0.scale=0.5", "surface.iso_value=0.4", "shot.name=other"});
+  EXPECT_EQ(scene.shot.frames, 3);
+  EXPECT_EQ(*scene.bodies[0].placement.scale, 0.5);
+  EXPECT_EQ(scene.surface.iso_value, 0.4);
+  EXPECT_EQ(scene.shot.name, "other");
+  EXPECT_NE(error_of(good_scene, {"shot.framse=3"}).find("--set shot.framse=3: shot.framse: unknown key; did you mean `frames`?"),
+            std::string::npos);
+  EXPECT_NE(error_of(good_scene, {"shot.frames=0"}).find("--set shot.frames=0: shot.frames: must be"), std::string::npos);
+  EXPECT_NE(error_of(good_scene, {"body.3.scale=1"}).find("must be a number below 1"), std::string::npos);
+  EXPECT_NE(error_of(good_scene, {"nonsense"}).find("must be key.path=value"), std::string::npos);
+}
+
+TEST(SceneWriter, WhatIsWrittenReadsBackTheSame) {
+  const Scene scene = read_scene(write_scene_file(good_scene));
+  const std::string text = write_scene(scene);
+  EXPECT_EQ(write_scene(read_scene(write_scene_file(text))), text);
+  EXPECT_NE(text.find("fps = 24.0"), std::string::npos) << "defaults are written out:\n" << text;
+}
+
+TEST(SceneWriter, SectionsTellWhatChanged) {
+  const Scene scene = read_scene(write_scene_file(good_scene));
+  Scene other = scene;
+  other.look.exposure = 2.0;
+  other.shot.frames = 20;
+  EXPECT_EQ(write_section(scene, SceneSection::simulation), write_section(other, SceneSection::simulation));
+  EXPECT_NE(write_section(scene, SceneSection::render), write_section(other, SceneSection::render));
+  other.materials[0].density = 901.0;
+  EXPECT_NE(write_section(scene, SceneSection::simulation), write_section(other, SceneSection::simulation));
+}
+
+TEST(SceneWriter, ReferencePageIsWhatTheCodeSays) {
+  EXPECT_EQ(read_file(std::filesystem::path(SMELT_SOURCE_DIR) / "docs/scene.md"), write_scene_reference())
+      << "print it anew: ./smelt scene-reference > docs/scene.md";
+}
+
+TEST(SceneReader, EverySceneOfTheProjectIsSound) {
+  int n = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(SMELT_SOURCE_DIR) / "scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    EXPECT_NO_THROW(read_scene(entry.path())) << entry.path();
+    ++n;
+  }
+  EXPECT_GE(n, 1);
+}
+
+TEST(NearestWord, FindsTyposAndMissingUnits) {
+  const std::vector<std::string> known = {"density_kg_m3", "frames", "fps"};
+  EXPECT_EQ(nearest_word("framse", known), "frames");
+  EXPECT_EQ(nearest_word("density", known), "density_kg_m3");
+  EXPECT_EQ(nearest_word("zebra", known), std::nullopt);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+}
+
+}  // namespace
+}  // namespace smelt
