@@ -3,6 +3,7 @@
 #include "core/error.h"
 
 #include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
 
 namespace smelt {
 
@@ -21,7 +22,6 @@ struct EmbreeScene::Handles {
 };
 
 EmbreeScene::EmbreeScene() : handles_(std::make_unique<Handles>()) {
-  // One thread builds the hierarchy: two could order its leaves differently from run to run, and so the pictures.
   handles_->device = rtcNewDevice(nullptr);
   handles_->check("opening the ray tracer");
   handles_->scene = rtcNewScene(handles_->device);
@@ -56,7 +56,9 @@ int EmbreeScene::add_mesh(const TriangleMesh& mesh, const Vec3& origin) {
 }
 
 void EmbreeScene::commit() {
-  rtcCommitScene(handles_->scene);
+  // One thread builds the hierarchy: two could order its leaves differently from run to run, and so the pictures. (Embree's own
+  // "threads=1" would hold all of oneTBB to one thread.)
+  tbb::task_arena(1).execute([&] { rtcCommitScene(handles_->scene); });
   handles_->check("building the ray hierarchy");
 }
 

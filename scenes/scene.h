@@ -133,7 +133,7 @@ struct LookSettings {
 };
 
 struct RenderSettings {
-  int samples = 4;
+  int samples = RenderOptions{}.samples;
   bool denoise = true;
   std::int64_t seed = 1;
 };

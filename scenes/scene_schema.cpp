@@ -170,13 +170,13 @@ void visit_render(SchemaVisitor& v, Scene& s) {
         v.vector({"radiance", "linear RGB"}, l.radiance, non_negative);
       });
   v.table({"look", "how the fluid looks, blended from cold to hot by its temperature"}, nullptr, [&] {
-    visit_look_state(v, "cold", "at and below cold_K", s.look.cold);
-    visit_look_state(v, "hot", "at and above hot_K", s.look.hot);
     v.number({"cold_K", "where the cold look ends", "the first material's heat.cold_K"}, s.look.cold_K, non_negative);
     v.number({"hot_K", "where the hot look begins", "the first material's heat.hot_K"}, s.look.hot_K, non_negative);
     v.number({"specular", "strength of the coat's reflection"}, s.look.specular, unit_interval);
     v.number({"ior", "index of refraction of the coat"}, s.look.ior, {1.01, 3.0});
     v.number({"exposure", "brightness before tone mapping"}, s.look.exposure, positive);
+    visit_look_state(v, "cold", "at and below cold_K", s.look.cold);
+    visit_look_state(v, "hot", "at and above hot_K", s.look.hot);
   });
   v.table({"render", "quality of the pictures"}, nullptr, [&] {
     visit_int(v, {"samples", "per pixel of fluid"}, s.render.samples, {1, 4096});

@@ -34,7 +34,7 @@ std::string range_text(std::string_view first, std::string_view second, const st
   return fmt::format("{{ {} = {}, {} = {} }}", first, number_text(value.first), second, number_text(value.second));
 }
 
-/// Writes TOML; a table's own keys come before its sub-tables, as TOML wants.
+/// Writes TOML. The schema visits a table's own keys before its sub-tables, as TOML wants.
 class TomlWriter final : public SchemaVisitor {
  public:
   std::string text;
@@ -69,16 +69,22 @@ class TomlWriter final : public SchemaVisitor {
   }
 
  private:
-  void line(const Key& key, const std::string& value) { pending_heading(), text += fmt::format("{} = {}\n", key.name, value); }
+  void line(const Key& key, const std::string& value) {
+    CHECK(!table_closed_);  // TOML would take the line for one of the sub-table's
+    pending_heading();
+    text += fmt::format("{} = {}\n", key.name, value);
+  }
 
   void open(const Key& key, std::string_view before, std::string_view after, const std::function<void()>& visit) {
     pending_heading();
     const std::string outer = path_;
     path_ = outer.empty() ? std::string(key.name) : fmt::format("{}.{}", outer, key.name);
     heading_ = fmt::format("{}{}{}{}\n", text.empty() ? "" : "\n", before, path_, after);
+    table_closed_ = false;
     visit();
     pending_heading();
     path_ = outer;
+    table_closed_ = true;
   }
 
   void pending_heading() {
@@ -88,6 +94,7 @@ class TomlWriter final : public SchemaVisitor {
 
   std::string path_;
   std::string heading_;
+  bool table_closed_ = false;  ///< a sub-table of the innermost table has been written
 };
 
 /// Writes one markdown table a section.

@@ -43,25 +43,41 @@ ParticleFrame to_frame(const Solver<3, Real>& solver, double spacing, int frame,
   return result;
 }
 
-/// The newest checkpoint that is sound and not beyond the frames asked for.
-std::optional<Checkpoint> find_checkpoint(const OutputFolder& folder, int last_frame, std::uint64_t scene_hash, Progress& progress) {
+/// Newest first.
+std::vector<std::filesystem::path> list_checkpoints(const OutputFolder& folder) {
   std::vector<std::filesystem::path> files;
   if (std::filesystem::is_directory(folder.checkpoints()))
     for (const auto& entry : std::filesystem::directory_iterator(folder.checkpoints()))
       if (entry.path().extension() == ".bin") files.push_back(entry.path());
   std::sort(files.rbegin(), files.rend());
-  for (const auto& file : files) {
-    try {
-      Checkpoint checkpoint = read_checkpoint(file);
-      if (checkpoint.scene_hash != scene_hash)
-        fail("{}: this folder was simulated with another scene, or another version of smelt; resume with {}, or use another folder (-o)",
-             file.string(), folder.scene().string());
-      if (checkpoint.frame <= last_frame) return checkpoint;
-    } catch (const Error& error) {
-      if (std::string(error.what()).find("damaged") == std::string::npos) throw;
-      progress.message(fmt::format("{}; trying the one before", error.what()));
-    }
+  return files;
+}
+
+std::optional<Checkpoint> read_if_sound(const std::filesystem::path& file, Progress& progress) {
+  try {
+    return read_checkpoint(file);
+  } catch (const Error& error) {
+    progress.message(fmt::format("{}; trying the one before", error.what()));
+    return std::nullopt;
   }
+}
+
+/// The newest sound checkpoint; nothing where the folder has none. Throws Error where those it has are of no use: starting over would
+/// write over frames that somebody wanted to keep.
+std::optional<Checkpoint> find_checkpoint(const OutputFolder& folder, std::uint64_t scene_hash, Progress& progress) {
+  const auto files = list_checkpoints(folder);
+  for (const auto& file : files) {
+    std::optional<Checkpoint> checkpoint = read_if_sound(file, progress);
+    if (!checkpoint) continue;
+    if (checkpoint->scene_hash != scene_hash)
+      fail("{}: this folder was simulated from another scene, or by another version of smelt; resume with {}, or use another folder (-o)",
+           file.string(), folder.scene().string());
+    return checkpoint;
+  }
+  if (!files.empty())
+    fail("{}: none of the checkpoints can be read, so there is nothing to resume from; without --resume the result is moved aside and the "
+         "shot starts over",
+         folder.checkpoints().string());
   return std::nullopt;
 }
 
@@ -93,9 +109,7 @@ void store_frame(const Solver<3, Real>& solver, const SimulationSetup& setup, co
 
 template <typename Real>
 void run_simulation(const Scene& scene, const OutputFolder& folder, const StageOptions& options, SimulationSetup& setup,
-                    std::uint64_t scene_hash, RunReport& report, Progress& progress) {
-  const std::optional<Checkpoint> checkpoint =
-      options.resume ? find_checkpoint(folder, options.frames.last, scene_hash, progress) : std::nullopt;
+                    const std::optional<Checkpoint>& checkpoint, std::uint64_t scene_hash, RunReport& report, Progress& progress) {
   Solver<3, Real> solver(setup.parameters, setup.materials, build_colliders(setup),
                          checkpoint ? checkpoint->particles : std::move(setup.particles));
   int frame = 1;
@@ -134,13 +148,15 @@ void simulate_frames(const Scene& scene, const OutputFolder& folder, const Stage
   create_directories_or_fail(folder.particles());
   create_directories_or_fail(folder.checkpoints());
   const std::uint64_t scene_hash = hash_bytes(version, hash_bytes(write_section(scene, SceneSection::simulation)));
+  // Before anything is written: resuming may be refused.
+  const auto checkpoint = options.resume ? find_checkpoint(folder, scene_hash, progress) : std::nullopt;
   const std::string text = write_scene(scene);
   write_file_atomically(folder.scene(), text);
   report.set_run(text, scene_hash, setup.spacing, setup.body_volume);
   if (scene.solver.precision == "double")
-    run_simulation<double>(scene, folder, options, setup, scene_hash, report, progress);
+    run_simulation<double>(scene, folder, options, setup, checkpoint, scene_hash, report, progress);
   else
-    run_simulation<float>(scene, folder, options, setup, scene_hash, report, progress);
+    run_simulation<float>(scene, folder, options, setup, checkpoint, scene_hash, report, progress);
 }
 
 }  // namespace smelt

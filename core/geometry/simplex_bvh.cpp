@@ -3,6 +3,7 @@
 #include "core/error.h"
 
 #include <embree3/rtcore.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <utility>
@@ -44,7 +45,8 @@ void build_embree_scene(const std::vector<Simplex<3>>& triangles, RTCDevice& dev
   rtcCommitGeometry(geometry);
   rtcAttachGeometry(scene, geometry);
   rtcReleaseGeometry(geometry);
-  rtcCommitScene(scene);
+  // One thread, as its result may depend on how many there are. (Embree's own "threads=1" would hold all of oneTBB to one thread.)
+  tbb::task_arena(1).execute([&] { rtcCommitScene(scene); });
   if (rtcGetDeviceError(device) != RTC_ERROR_NONE) throw InternalError("Embree failed to build a scene of triangles");
 }
 

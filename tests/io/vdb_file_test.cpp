@@ -12,7 +12,7 @@ namespace smelt {
 namespace {
 
 std::filesystem::path temporary(const std::string& name) {
-  return std::filesystem::path(testing::TempDir()) / name;
+  return std::filesystem::path(testing::TempDir()) / ("vdb_file_" + name);
 }
 
 openvdb::FloatGrid::Ptr make_grid(float value) {
@@ -73,7 +73,7 @@ TEST(VdbFile, RefusesFilesThatAreNotWhole) {
   changed[whole.size() / 2] = static_cast<char>(changed[whole.size() / 2] ^ 1);
   write_file_atomically(temporary("changed.vdb"), changed);
   EXPECT_THROW(read_vdb(temporary("changed.vdb")), Error);
-  EXPECT_NE(message_of<Error>([&] { read_vdb(temporary("none.vdb")); }).find("No such file"), std::string::npos);
+  EXPECT_NE(message_of<Error>([&] { read_vdb(temporary("missing.vdb")); }).find("No such file"), std::string::npos);
   write_file_atomically(temporary("text.vdb"), "This is not an OpenVDB file, whatever its name says.\n");
   EXPECT_THROW(read_vdb(temporary("text.vdb")), Error);
 }
