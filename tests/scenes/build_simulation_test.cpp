@@ -17,7 +17,7 @@ Scene bunny_scene(const std::vector<std::string>& overrides = {}) {
 TEST(BuildSimulation, BunnyHasTheCountAndTheMass) {
   const SimulationSetup setup = build_simulation(bunny_scene());
   EXPECT_NEAR(static_cast<double>(setup.particles.size()), 10188.0, 0.01 * 10188.0);
-  const double mass = setup.particles.size() * setup.parameters.particle_volume * setup.materials[0].density;
+  const double mass = static_cast<double>(setup.particles.size()) * setup.parameters.particle_volume * setup.materials[0].density;
   EXPECT_NEAR(mass / (900.0 * 0.194288), 1.0, 1e-3);
   EXPECT_TRUE(setup.warnings.empty());
 }

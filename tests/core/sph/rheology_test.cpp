@@ -1,6 +1,7 @@
 #include "core/sph/rheology.h"
 #include "core/sph/stress_update.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

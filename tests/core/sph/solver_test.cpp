@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/sph/diagnostics.h"
+#include "core/sph/kernel.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -196,7 +197,7 @@ TEST(Solver, HeatSpreadsAtTheRightRate) {
   // Insulated ends (nothing beyond the particles) are what the cosine wants. Its amplitude, by projection:
   double amplitude = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i)
-    amplitude += 2.0 / p.size() * (solver.particles().temperature[i] - 300.0) * std::cos(k * solver.particles().position[i][0]);
+    amplitude += 2.0 / static_cast<double>(p.size()) * (solver.particles().temperature[i] - 300.0) * std::cos(k * solver.particles().position[i][0]);
   EXPECT_NEAR(amplitude / 10.0, std::exp(-0.5), 0.02 * std::exp(-0.5));
 }
 
