@@ -54,7 +54,8 @@ TEST(SweepSphere, AgreesWithMarchingOnRandomTriangles) {
     Simplex<3> t = {point(), point(), point()};
     if (trial % 5 == 0) t[2] = t[0] + 1e-3 * point() + 0.5 * (t[1] - t[0]);  // slivers
     if (trial % 50 == 0) t[2] = t[1];                                        // degenerate
-    const Vec3 centre = 2.0 * point(), displacement = 3.0 * point();
+    // Aimed somewhere near the triangle.
+    const Vec3 centre = 2.0 * point(), displacement = 1.5 * (0.4 * t[0] + 0.6 * t[1] + 0.5 * point() - centre);
     const double radius = 0.05 + 0.2 * std::abs(uniform(random));
     if ((centre - closest_point<3>(centre, t)).norm() <= radius) continue;
     const auto contact = sweep_sphere<3>(centre, displacement, radius, t);

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <random>
 
 namespace smelt {
@@ -107,7 +108,7 @@ double rigid_force(bool rotate) {
   return largest;
 }
 
-// Surface particles included. With the bare gradient the rotation alone gives accelerations of order 100 here.
+// Surface particles included: the bare gradient of [P 4-45] is not even exact for a constant there.
 TEST(Solver, RigidMotionFeelsNoViscousForce) {
   EXPECT_LT(rigid_force(false), 1e-9);
   EXPECT_LT(rigid_force(true), 1e-8);
@@ -176,29 +177,28 @@ TEST(Solver, SumsOfPairsMatchBruteForce) {
   }
 }
 
-// Cleary and Monaghan's factor 2: without it [P 6-9] a profile spreads at half the rate.
+// Cleary and Monaghan's factor 2: without it [P 6-9] the exponent below is half as large. On this lattice the kernel's
+// second moment is 2.2 % high, and the softening 0.01 h^2 takes 1.3 % of it back.
 TEST(Solver, HeatSpreadsAtTheRightRate) {
-  Particles<2> p;
-  const int n_x = 80, n_y = 12;
-  const double k = 3.14159265358979323846 / (n_x * spacing);
-  for (int j = 0; j < n_y; ++j)
-    for (int i = 0; i < n_x; ++i) {
-      p.id.push_back(static_cast<std::int32_t>(p.id.size()));
-      p.position.push_back(Vec<2>((i + 0.5) * spacing, j * spacing));
-      p.velocity.push_back(Vec<2>::Zero());
-      p.density.push_back(1000.0);
-      p.temperature.push_back(300.0 + 10.0 * std::cos(k * p.position.back()[0]));
-    }
+  Particles<1> p;
+  constexpr int n = 80;
+  const double k = std::numbers::pi / (n * spacing);
+  for (int i = 0; i < n; ++i) {
+    p.id.push_back(i);
+    p.position.push_back(Vec<1>((i + 0.5) * spacing));
+    p.velocity.push_back(Vec<1>::Zero());
+    p.density.push_back(1000.0);
+    p.temperature.push_back(300.0 + 10.0 * std::cos(k * p.position.back()[0]));
+  }
   Material m = inviscid_material();
-  m.heat = HeatProperties{0.01, 200.0, 400.0};
-  Solver<2, double> solver(make_parameters<2>(), {m}, {}, p);
-  const double end = 0.5 / (0.01 * k * k);  // the cosine falls to exp(-1/2)
-  run_until(solver, end);
+  m.heat = HeatProperties{1.0, 200.0, 400.0};
+  Solver<1, double> solver(make_parameters<1>(), {m}, {}, p);
+  run_until(solver, 0.5 / (k * k));  // the cosine falls to exp(-1/2)
   // Insulated ends (nothing beyond the particles) are what the cosine wants. Its amplitude, by projection:
   double amplitude = 0.0;
-  for (std::size_t i = 0; i < p.size(); ++i)
-    amplitude += 2.0 / static_cast<double>(p.size()) * (solver.particles().temperature[i] - 300.0) * std::cos(k * solver.particles().position[i][0]);
-  EXPECT_NEAR(amplitude / 10.0, std::exp(-0.5), 0.02 * std::exp(-0.5));
+  for (std::size_t i = 0; i < n; ++i)
+    amplitude += 2.0 / n * (solver.particles().temperature[i] - 300.0) * std::cos(k * solver.particles().position[i][0]);
+  EXPECT_NEAR(std::log(10.0 / amplitude), 0.5, 0.03 * 0.5);
 }
 
 TEST(Solver, ColdBlockStandsOnTheGround) {
