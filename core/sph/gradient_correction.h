@@ -8,7 +8,7 @@
 
 namespace smelt {
 
-/// Below this eigenvalue of the position moment (1 in the bulk, about 0.5 at a flat surface, 0.2 in a corner of a lattice) a particle has
+/// Below this eigenvalue of the position moment (about 1 in the bulk, less at a surface) a particle has
 /// too few neighbours along the eigenvector to tell a gradient: lone particles, threads across themselves, sheets across theirs.
 inline constexpr double smallest_trusted_moment = 0.1;
 
