@@ -54,6 +54,7 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
     if (m.heat) terms_.pair.heat = true;
   }
   terms_.pair.xsph = parameters_.xsph > 0.0;
+  for (int a = 0; a < Dim; ++a) terms_.periodic = terms_.periodic || is_periodic(parameters_.period, a);
   terms_.relaxed = terms_.pair.stress && parameters_.shear_wave_speed > 0.0;
   CHECK_EQ(particles_.temperature.size(), terms_.pair.heat ? n : 0);
   if (terms_.pair.stress) {
@@ -112,10 +113,14 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
 template <int Dim, typename Real>
 void Solver<Dim, Real>::search_neighbours() {
   const double radius = (2.0 + parameters_.skin) * parameters_.smoothing_length;
+  if (terms_.periodic) wrap_positions<Dim>(parameters_.period, particles_.position);
   const auto order = compute_cell_order<Dim>(particles_.position, particles_.id, radius);
   for_each_array(particles_, [&](auto& values) { reorder(values, order); });
   reorder(transport_, order);
-  build_neighbour_lists<Dim>(particles_.position, radius, radius, pair_lanes<Real>, lists_);
+  if (terms_.periodic)
+    images_ = build_periodic_neighbour_lists<Dim>(parameters_.period, particles_.position, particles_.id, radius, pair_lanes<Real>, lists_);
+  else
+    build_neighbour_lists<Dim>(particles_.position, radius, radius, pair_lanes<Real>, lists_);
   // The middle of the particles: what single precision resolves there is relative to their extent.
   Box<Dim> bounds;
   for (const auto& x : particles_.position) bounds.extend(x);
@@ -129,8 +134,9 @@ template <int Dim, typename Real>
 void Solver<Dim, Real>::pack_motion(const std::vector<Vec<Dim>>& velocity) {
   using Fields = PairFields<Dim, Real>;
   const std::size_t n = particles_.size();
-  fields_.motion.resize(n * Fields::motion_stride);
-  if (terms_.pair.heat) fields_.temperature.resize(n);
+  const std::size_t n_records = n + images_.size();
+  fields_.motion.resize(n_records * Fields::motion_stride);
+  if (terms_.pair.heat) fields_.temperature.resize(n_records);
   const double reference = materials_.front().heat ? materials_.front().heat->cold : 0.0;
   parallel_for_each(n, [&](std::size_t i) {
     Real* record = fields_.motion.data() + i * Fields::motion_stride;
@@ -141,6 +147,22 @@ void Solver<Dim, Real>::pack_motion(const std::vector<Vec<Dim>>& velocity) {
     record[Fields::density_at] = static_cast<Real>(particles_.density[i]);
     // Relative to the melting range, where single precision is needed most.
     if (terms_.pair.heat) fields_.temperature[i] = static_cast<Real>(particles_.temperature[i] - reference);
+  });
+  copy_motion_to_images();
+}
+
+template <int Dim, typename Real>
+void Solver<Dim, Real>::copy_motion_to_images() {
+  using Fields = PairFields<Dim, Real>;
+  const std::size_t n = particles_.size();
+  parallel_for_each(images_.size(), [&](std::size_t k) {
+    const std::size_t source = images_.source[k];
+    Real* record = fields_.motion.data() + (n + k) * Fields::motion_stride;
+    std::copy_n(fields_.motion.data() + source * Fields::motion_stride, Fields::motion_stride, record);
+    // From the state, as its source's: shifting the rounded record would round it twice.
+    const Vec<Dim> x = particles_.position[source] + images_.shift[k] - origin_;
+    for (int a = 0; a < Dim; ++a) record[a] = static_cast<Real>(x[a]);
+    if (terms_.pair.heat) fields_.temperature[n + k] = fields_.temperature[source];
   });
 }
 
@@ -163,6 +185,16 @@ void Solver<Dim, Real>::pack_forces(std::size_t i, const Mat<Dim>& corrected_str
       for (int b = 0; b < Dim; ++b) force[1 + a * Dim + b] = static_cast<Real>(corrected_stress(a, b));
 }
 
+template <int Dim, typename Real>
+void Solver<Dim, Real>::copy_forces_to_images() {
+  copy_motion_to_images();
+  const std::size_t n = particles_.size();
+  const int stride = PairFields<Dim, Real>::force_stride(terms_.pair.stress);
+  parallel_for_each(images_.size(), [&](std::size_t k) {
+    std::copy_n(fields_.force.data() + images_.source[k] * stride, stride, fields_.force.data() + (n + k) * stride);
+  });
+}
+
 // ------------------------------------------------------------------------------------------------------ rates and forces
 
 template <int Dim, typename Real>
@@ -175,7 +207,7 @@ void Solver<Dim, Real>::evaluate_rates() {
 /// With dt = 0 nothing advances, but the stress of a law without memory and the XSPH correction follow from the state.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::integrate_rates(double dt) {
-  fields_.force.resize(particles_.size() * PairFields<Dim, Real>::force_stride(terms_.pair.stress));
+  fields_.force.resize((particles_.size() + images_.size()) * PairFields<Dim, Real>::force_stride(terms_.pair.stress));
   parallel_for_each(particles_.size(), [&](std::size_t i) {
     const RateSums<Dim, Real>& rate = rates_[i];
     const Material& m = material(i);
@@ -188,6 +220,7 @@ void Solver<Dim, Real>::integrate_rates(double dt) {
       for (int a = 0; a < Dim; ++a) xsph_[i][a] = parameters_.xsph * rate.xsph[a];
     pack_forces(i, corrected_stress);
   });
+  copy_forces_to_images();
 }
 
 /// Advances the extra stress S and returns S L for the force pass.

@@ -5,6 +5,7 @@
 #include "core/sph/material.h"
 #include "core/sph/pair_sums.h"
 #include "core/sph/particles.h"
+#include "core/sph/periodic.h"
 #include "core/sph/time_step.h"
 
 #include <limits>
@@ -23,6 +24,9 @@ struct SolverParameters {
   double xsph = 0.0;                ///< epsilon of [P 6-16]
   double courant = 0.25;            ///< C of the time step
   double min_time_step = 1e-9;      ///< [s]; a smaller one is an error, not a slower simulation
+  /// Repeats along each axis whose upper end is above its lower one [m]; empty: none. A particle that leaves through a face comes in
+  /// through the opposite one at the next neighbour search. Obstacles do not repeat: they reach beyond the faces they cross.
+  Box<Dim> period;
   Box<Dim> domain;                  ///< a particle that leaves it has escaped: an error; empty box: no such check
   double skin = 0.08;               ///< reach of the neighbour lists beyond the support, in smoothing lengths
 };
@@ -31,6 +35,7 @@ struct SolverParameters {
 struct SolverTerms {
   PairTerms pair;
   bool relaxed = false;  ///< the stress is relaxed, with the shear wave speed as its stiffness
+  bool periodic = false;  ///< some axis repeats
 };
 
 /// Advances particles in time by leap-frog (kick-drift-kick). Real (float or double) is what the pair loops compute in; the state is
@@ -45,6 +50,7 @@ class Solver {
   /// The state, in the order of the last neighbour search.
   const Particles<Dim>& particles() const { return particles_; }
   const std::vector<Vec<Dim>>& acceleration() const { return acceleration_; }  ///< [m/s^2], same order
+  /// Indices from the number of particles on name periodic images.
   const NeighbourLists& neighbours() const { return lists_; }
   const SolverParameters<Dim>& parameters() const { return parameters_; }
   const std::vector<Material>& materials() const { return materials_; }
@@ -64,6 +70,8 @@ class Solver {
  private:
   void search_neighbours();
   void pack_motion(const std::vector<Vec<Dim>>& velocity);
+  void copy_motion_to_images();
+  void copy_forces_to_images();
   void evaluate_rates();
   void integrate_rates(double dt);
   Mat<Dim> integrate_stress(std::size_t i, double dt);
@@ -82,6 +90,7 @@ class Solver {
 
   // Derived from the state.
   NeighbourLists lists_;
+  PeriodicImages<Dim> images_;  ///< none without a periodic axis
   PairFields<Dim, Real> fields_;
   Vec<Dim> origin_ = Vec<Dim>::Zero();
   double travelled_ = std::numeric_limits<double>::infinity();  ///< farthest way of any particle since the last search [m]
