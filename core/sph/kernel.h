@@ -2,7 +2,7 @@
 // Smoothing kernels W(r, h) [1/m^d] in one, two and three dimensions  [S 4.16-4.17, P 7-25].
 //
 // With q = r/h every kernel is W = sigma_d f(q), where sigma_d makes its integral 1. `Kernel<Dim>` gives the scalar,
-// double-precision form that tests, seeding and diagnostics use; the pair loops have their own vectorised cubic spline.
+// double-precision form that tests, seeding and diagnostics use; the pair loops have their own vectorised ones.
 // The quintic constants correct [S]: 1/(120 h) in 1D (not 120/h) and 1/(120 pi h^3) in 3D (3/(359 pi h^3) is a rounding).
 
 #include "core/error.h"

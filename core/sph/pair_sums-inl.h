@@ -6,21 +6,16 @@
 #define SMELT_PAIR_SUMS_INL_H
 #endif
 
-#include "core/sph/kernel.h"
+#include "core/sph/pair_kernels-inl.h"
 #include "core/sph/pair_sums.h"
 
 #include <hwy/highway.h>
 
+#include <type_traits>
+
 HWY_BEFORE_NAMESPACE();
 namespace smelt {
 namespace HWY_NAMESPACE {
-
-namespace hn = hwy::HWY_NAMESPACE;
-
-template <typename Real>
-using Tag = hn::CappedTag<Real, pair_lanes<Real>>;
-template <typename Real>
-using Simd = hn::Vec<Tag<Real>>;
 
 /// Turns four vectors of rows (in blocks of four lanes) into four vectors of columns.
 HWY_INLINE void transpose_blocks(Simd<float> (&rows)[4]) {
@@ -77,42 +72,6 @@ HWY_INLINE Real sum_lanes(Simd<Real> v) {
   return hn::GetLane(hn::SumOfLanes(Tag<Real>(), v));
 }
 
-/// The cubic spline with its constants folded.
-template <int Dim, typename Real>
-struct CubicSpline {
-  Real inverse_h;
-  Real value_scale;     ///< sigma
-  Real gradient_scale;  ///< sigma / h^2
-
-  explicit CubicSpline(double h)
-      : inverse_h(static_cast<Real>(1.0 / h)),
-        value_scale(static_cast<Real>(Kernel<Dim>(h).value(0.0))),
-        gradient_scale(static_cast<Real>(Kernel<Dim>(h).value(0.0) / (h * h))) {
-    // f(0) = 1 for the cubic spline: 0.25 * 2^3 - 1.
-  }
-
-  /// F = (dW/dr)/r from r^2; 0 beyond 2h, finite at r = 0.
-  HWY_INLINE Simd<Real> gradient_over_r(Simd<Real> r2) const {
-    const Tag<Real> d;
-    const auto q = hn::Mul(hn::Sqrt(r2), hn::Set(d, inverse_h));
-    const auto near_branch = hn::MulAdd(q, hn::Set(d, Real(2.25)), hn::Set(d, Real(-3)));
-    const auto a = hn::Max(hn::Sub(hn::Set(d, Real(2)), q), hn::Zero(d));
-    const auto far_branch = hn::Div(hn::Mul(hn::Mul(a, a), hn::Set(d, Real(-0.75))), q);
-    return hn::Mul(hn::Set(d, gradient_scale), hn::IfThenElse(hn::Lt(q, hn::Set(d, Real(1))), near_branch, far_branch));
-  }
-
-  /// W from r^2.
-  HWY_INLINE Simd<Real> value(Simd<Real> r2) const {
-    const Tag<Real> d;
-    const auto q = hn::Mul(hn::Sqrt(r2), hn::Set(d, inverse_h));
-    const auto a = hn::Max(hn::Sub(hn::Set(d, Real(2)), q), hn::Zero(d));
-    const auto b = hn::Max(hn::Sub(hn::Set(d, Real(1)), q), hn::Zero(d));
-    const auto a3 = hn::Mul(a, hn::Mul(a, a));
-    const auto b3 = hn::Mul(b, hn::Mul(b, b));
-    return hn::Mul(hn::Set(d, value_scale), hn::MulSub(a3, hn::Set(d, Real(0.25)), b3));
-  }
-};
-
 /// What every pair needs of its neighbours.
 template <int Dim, typename Real>
 struct Neighbours {
@@ -138,11 +97,11 @@ HWY_INLINE Simd<Real> dot(const Simd<Real> (&a)[Dim], const Simd<Real> (&b)[Dim]
   return sum;
 }
 
-template <int Dim, typename Real, bool with_stress, bool with_heat, bool with_xsph>
+template <typename PairKernel, int Dim, typename Real, bool with_stress, bool with_heat, bool with_xsph>
 void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, double h, std::size_t begin,
                std::size_t end, RateSums<Dim, Real>* sums) {
   const Tag<Real> d;
-  const CubicSpline<Dim, Real> kernel(h);
+  const PairKernel kernel(h);
   constexpr std::size_t lanes = pair_lanes<Real>;
   using Fields = PairFields<Dim, Real>;
   const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
@@ -202,12 +161,12 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   }
 }
 
-template <int Dim, typename Real, bool with_stress>
+template <typename PairKernel, int Dim, typename Real, bool with_stress>
 void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const ForceParameters& parameters,
                 std::size_t begin, std::size_t end, std::array<Real, Dim>* acceleration) {
   const Tag<Real> d;
   const double h = parameters.smoothing_length;
-  const CubicSpline<Dim, Real> kernel(h);
+  const PairKernel kernel(h);
   constexpr std::size_t lanes = pair_lanes<Real>;
   using Fields = PairFields<Dim, Real>;
   constexpr int force_stride = Fields::force_stride(with_stress);
@@ -254,11 +213,11 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
 }
 
 /// Picks the loop compiled for just the terms in use.
-template <int Dim, typename Real>
+template <typename PairKernel, int Dim, typename Real>
 void select_rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms, double h,
                       std::size_t begin, std::size_t end, RateSums<Dim, Real>* sums) {
   const auto run = [&](auto stress, auto heat, auto xsph) HWY_ATTR {
-    rate_sums<Dim, Real, stress.value, heat.value, xsph.value>(fields, lists, h, begin, end, sums);
+    rate_sums<PairKernel, Dim, Real, stress.value, heat.value, xsph.value>(fields, lists, h, begin, end, sums);
   };
   const auto with_xsph = [&](auto stress, auto heat) HWY_ATTR {
     terms.xsph ? run(stress, heat, std::true_type{}) : run(stress, heat, std::false_type{});
@@ -269,24 +228,39 @@ void select_rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists&
   terms.stress ? with_heat(std::true_type{}) : with_heat(std::false_type{});
 }
 
-template <int Dim, typename Real>
+template <typename PairKernel, int Dim, typename Real>
 void select_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,
                        const ForceParameters& parameters, std::size_t begin, std::size_t end,
                        std::array<Real, Dim>* acceleration) {
-  terms.stress ? force_sums<Dim, Real, true>(fields, lists, parameters, begin, end, acceleration)
-               : force_sums<Dim, Real, false>(fields, lists, parameters, begin, end, acceleration);
+  terms.stress ? force_sums<PairKernel, Dim, Real, true>(fields, lists, parameters, begin, end, acceleration)
+               : force_sums<PairKernel, Dim, Real, false>(fields, lists, parameters, begin, end, acceleration);
+}
+
+/// Calls run(std::type_identity<the pair kernel of `type`>).
+template <int Dim, typename Real, typename Run>
+void with_kernel(KernelType type, const Run& run) {
+  switch (type) {
+    case KernelType::cubic_spline: return run(std::type_identity<CubicSpline<Dim, Real>>{});
+    case KernelType::quintic_spline: return run(std::type_identity<QuinticSpline<Dim, Real>>{});
+    case KernelType::quadratic: return run(std::type_identity<Quadratic<Dim, Real>>{});
+  }
 }
 
 #define SMELT_INSTANTIATE(Dim, Real, suffix)                                                                           \
   inline void rate_sums_##suffix(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,                     \
                                  const PairTerms& terms, double h, std::size_t begin, std::size_t end,                 \
                                  RateSums<Dim, Real>* sums) {                                                          \
-    select_rate_sums<Dim, Real>(fields, lists, terms, h, begin, end, sums);                                            \
+    with_kernel<Dim, Real>(terms.kernel, [&](auto kernel) HWY_ATTR {                                                   \
+      select_rate_sums<typename decltype(kernel)::type, Dim, Real>(fields, lists, terms, h, begin, end, sums);         \
+    });                                                                                                                \
   }                                                                                                                    \
   inline void force_sums_##suffix(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,                    \
                                   const PairTerms& terms, const ForceParameters& parameters, std::size_t begin,        \
                                   std::size_t end, std::array<Real, Dim>* acceleration) {                              \
-    select_force_sums<Dim, Real>(fields, lists, terms, parameters, begin, end, acceleration);                          \
+    with_kernel<Dim, Real>(terms.kernel, [&](auto kernel) HWY_ATTR {                                                   \
+      select_force_sums<typename decltype(kernel)::type, Dim, Real>(fields, lists, terms, parameters, begin, end,      \
+                                                                    acceleration);                                     \
+    });                                                                                                                \
   }
 SMELT_INSTANTIATE(3, float, 3f)
 SMELT_INSTANTIATE(3, double, 3d)

@@ -1,9 +1,10 @@
 #pragma once
 // The two passes over neighbour pairs, vectorised. Everything else in a step is per particle.
 //
-// Symbols: x_ij = x_i - x_j, v_ij = v_i - v_j, V_j = m_j/rho_j, W the cubic spline, F = (dW/dr)/r, so grad_w_ij = F x_ij.
+// Symbols: x_ij = x_i - x_j, v_ij = v_i - v_j, V_j = m_j/rho_j, W the kernel, F = (dW/dr)/r, so grad_w_ij = F x_ij.
 // Each pair is evaluated from both of its particles (no scattered writes), so results do not depend on threads.
 
+#include "core/sph/kernel.h"
 #include "core/sph/neighbours.h"
 
 #include <array>
@@ -14,6 +15,7 @@ namespace smelt {
 
 /// What a scene asks of the pair loops; an unused term costs neither time nor memory.
 struct PairTerms {
+  KernelType kernel = KernelType::cubic_spline;
   bool stress = false;
   bool heat = false;
   bool xsph = false;

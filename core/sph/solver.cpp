@@ -49,6 +49,7 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
     fail("simulation: particle volume, smoothing length and sound speed must be > 0, are {}, {}, {}",
          parameters_.particle_volume, parameters_.smoothing_length, parameters_.sound_speed);
   CHECK_EQ(particles_.density.size(), n);
+  terms_.pair.kernel = parameters_.kernel;
   for (const Material& m : materials_) {
     if (!inviscid(m.rheology)) terms_.pair.stress = true;
     if (m.heat) terms_.pair.heat = true;
@@ -112,7 +113,7 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
 
 template <int Dim, typename Real>
 void Solver<Dim, Real>::search_neighbours() {
-  const double radius = (2.0 + parameters_.skin) * parameters_.smoothing_length;
+  const double radius = (kernel_kappa(parameters_.kernel) + parameters_.skin) * parameters_.smoothing_length;
   if (terms_.periodic) wrap_positions<Dim>(parameters_.period, particles_.position);
   const auto order = compute_cell_order<Dim>(particles_.position, particles_.id, radius);
   for_each_array(particles_, [&](auto& values) { reorder(values, order); });

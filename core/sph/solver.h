@@ -17,6 +17,7 @@ template <int Dim>
 struct SolverParameters {
   double particle_volume = 0.0;     ///< at rest [m^Dim]; a particle's mass is its material's density times this
   double smoothing_length = 0.0;    ///< h [m]
+  KernelType kernel = KernelType::cubic_spline;
   Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
   double sound_speed = 0.0;         ///< c [m/s], of the linear equation of state p = c^2 (rho - rho0)
   double shear_wave_speed = 0.0;    ///< sqrt(G/rho0) of the relaxed stress [m/s]; 0: stress follows the strain rate at once

@@ -148,6 +148,19 @@ void run_until(Solver<Dim, Real>& solver, double end) {
   for (double remaining = end; remaining > 0.0;) remaining -= solver.step(remaining, end - remaining).dt;
 }
 
+TEST(Periodic, ListsReachAsFarAsTheKernel) {
+  for (const auto& [kernel, n_neighbours] :
+       {std::pair{KernelType::cubic_spline, 20}, std::pair{KernelType::quintic_spline, 44}}) {
+    auto parameters = make_parameters<2>();
+    parameters.kernel = kernel;
+    Solver<2, double> solver(parameters, {clay()}, {}, make_lattice<2>(0.0, 0.0));
+    solver.prepare();
+    // (2 + 0.08) 1.2 = 2.5 and (3 + 0.08) 1.2 = 3.7 spacings.
+    EXPECT_EQ(solver.neighbours().count[0], n_neighbours);
+    for (const auto& a : solver.acceleration()) ASSERT_LT(a.norm(), 1e-9);
+  }
+}
+
 // Without images the lattice's faces are free surfaces and its sums there are anything but those of the middle.
 TEST(Periodic, LatticeHasNoSurface) {
   Solver<3, double> solver(make_parameters<3>(), {clay()}, {}, make_lattice<3>(0.0, 0.0));
