@@ -178,8 +178,7 @@ void Solver<Dim, Real>::pack_forces(std::size_t i, const Mat<Dim>& corrected_str
   motion[Fields::density_at] = static_cast<Real>(rho);
 
   Real* force = fields_.force.data() + i * Fields::force_stride(terms_.pair.stress);
-  // Linear equation of state  [P 4-41].
-  const double pressure = parameters_.sound_speed * parameters_.sound_speed * (rho - material(i).density);
+  const double pressure = compute_pressure(parameters_.equation_of_state, parameters_.sound_speed, material(i).density, rho, 0.0);
   force[0] = static_cast<Real>(pressure / (rho * rho));
   if (terms_.pair.stress)
     for (int a = 0; a < Dim; ++a)
@@ -288,11 +287,24 @@ void Solver<Dim, Real>::drift(double dt) {
   travelled_ += farthest;
 }
 
+/// Largest sound speed of any particle [m/s].
+template <int Dim, typename Real>
+double Solver<Dim, Real>::fastest_sound() const {
+  const EquationOfState& state = parameters_.equation_of_state;
+  if (state.law == PressureLaw::linear) return parameters_.sound_speed;
+  return deterministic_reduce(
+      particles_.size(), 0.0,
+      [&](std::size_t i) {
+        return compute_sound_speed(state, parameters_.sound_speed, material(i).density, particles_.density[i], 0.0);
+      },
+      [](double a, double b) { return std::max(a, b); });
+}
+
 template <int Dim, typename Real>
 TimeStepInput Solver<Dim, Real>::time_step_input() const {
   TimeStepInput input;
   input.smoothing_length = parameters_.smoothing_length;
-  const double c = parameters_.sound_speed;
+  const double c = fastest_sound();
   const double shear = terms_.relaxed ? parameters_.shear_wave_speed : 0.0;
   input.wave_speed = std::sqrt(c * c + 4.0 / 3.0 * shear * shear);
   struct Extremes {

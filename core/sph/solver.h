@@ -2,6 +2,7 @@
 // The viscoplastic SPH solver  [P Algorithm 3, with the corrections of docs/references.md].
 
 #include "core/sph/collision.h"
+#include "core/sph/equation_of_state.h"
 #include "core/sph/material.h"
 #include "core/sph/pair_sums.h"
 #include "core/sph/particles.h"
@@ -19,7 +20,8 @@ struct SolverParameters {
   double smoothing_length = 0.0;    ///< h [m]
   KernelType kernel = KernelType::cubic_spline;
   Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
-  double sound_speed = 0.0;         ///< c [m/s], of the linear equation of state p = c^2 (rho - rho0)
+  double sound_speed = 0.0;         ///< c [m/s] at rest, of the equation of state; an ideal gas has its own and needs none
+  EquationOfState equation_of_state;
   double shear_wave_speed = 0.0;    ///< sqrt(G/rho0) of the relaxed stress [m/s]; 0: stress follows the strain rate at once
   double artificial_viscosity = 0.0;  ///< alpha of [P 6-15]
   double xsph = 0.0;                ///< epsilon of [P 6-16]
@@ -80,6 +82,7 @@ class Solver {
   void evaluate_forces();
   void kick(double dt);
   void drift(double dt);
+  double fastest_sound() const;
   TimeStepInput time_step_input() const;
   void check_state(double time) const;
 
