@@ -212,6 +212,33 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
   }
 }
 
+template <typename PairKernel, int Dim, typename Real>
+void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, double h, std::size_t begin,
+                  std::size_t end, DensitySums<Real>* sums) {
+  const Tag<Real> d;
+  const PairKernel kernel(h);
+  constexpr std::size_t lanes = pair_lanes<Real>;
+  using Fields = PairFields<Dim, Real>;
+  for (std::size_t i = begin; i < end; ++i) {
+    auto mass = hn::Zero(d);
+    auto volume = hn::Zero(d);
+    const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
+    const std::int32_t* row = lists.index.data() + lists.begin[i];
+    const std::size_t n = lists.count[i];
+    for (std::size_t k = 0; k < n; k += lanes) {
+      const Neighbours<Dim, Real> pair(motion_i, fields.motion.data(), row + k);
+      // The padding is the particle itself, whose W is not nothing: it counts once, below.
+      const auto w = hn::IfThenElseZero(hn::FirstN(d, n - k), kernel.value(dot<Dim, Real>(pair.x_ij, pair.x_ij)));
+      const auto volume_w = hn::Mul(pair.volume, w);
+      mass = hn::MulAdd(pair.density, volume_w, mass);
+      volume = hn::Add(volume, volume_w);
+    }
+    const Real self = motion_i[Fields::volume_at] * hn::GetLane(kernel.value(hn::Zero(d)));
+    sums[i].mass = sum_lanes<Real>(mass) + motion_i[Fields::density_at] * self;
+    sums[i].volume = sum_lanes<Real>(volume) + self;
+  }
+}
+
 /// Picks the loop compiled for just the terms in use.
 template <typename PairKernel, int Dim, typename Real>
 void select_rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms, double h,
@@ -260,6 +287,13 @@ void with_kernel(KernelType type, const Run& run) {
     with_kernel<Dim, Real>(terms.kernel, [&](auto kernel) HWY_ATTR {                                                   \
       select_force_sums<typename decltype(kernel)::type, Dim, Real>(fields, lists, terms, parameters, begin, end,      \
                                                                     acceleration);                                     \
+    });                                                                                                                \
+  }                                                                                                                    \
+  inline void density_sums_##suffix(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,                  \
+                                    KernelType type, double h, std::size_t begin, std::size_t end,                     \
+                                    DensitySums<Real>* sums) {                                                         \
+    with_kernel<Dim, Real>(type, [&](auto kernel) HWY_ATTR {                                                           \
+      density_sums<typename decltype(kernel)::type, Dim, Real>(fields, lists, h, begin, end, sums);                    \
     });                                                                                                                \
   }
 SMELT_INSTANTIATE(3, float, 3f)

@@ -14,7 +14,8 @@ namespace smelt {
 // Highway's tables hold plain functions: one for each dimension and precision.
 #define SMELT_EXPORT(suffix)           \
   HWY_EXPORT(rate_sums_##suffix);      \
-  HWY_EXPORT(force_sums_##suffix);
+  HWY_EXPORT(force_sums_##suffix);     \
+  HWY_EXPORT(density_sums_##suffix);
 SMELT_EXPORT(3f)
 SMELT_EXPORT(3d)
 SMELT_EXPORT(2d)
@@ -30,6 +31,11 @@ SMELT_EXPORT(1d)
                           const ForceParameters& parameters, std::size_t begin, std::size_t end,                       \
                           std::array<Real, Dim>* acceleration) {                                                       \
     HWY_DYNAMIC_DISPATCH(force_sums_##suffix)(fields, lists, terms, parameters, begin, end, acceleration);             \
+  }                                                                                                                    \
+  template <>                                                                                                          \
+  void compute_density_sums<Dim, Real>(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, KernelType kernel,       \
+                          double smoothing_length, std::size_t begin, std::size_t end, DensitySums<Real>* sums) {      \
+    HWY_DYNAMIC_DISPATCH(density_sums_##suffix)(fields, lists, kernel, smoothing_length, begin, end, sums);            \
   }
 SMELT_DISPATCH(3, float, 3f)
 SMELT_DISPATCH(3, double, 3d)

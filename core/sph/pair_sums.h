@@ -1,5 +1,5 @@
 #pragma once
-// The two passes over neighbour pairs, vectorised. Everything else in a step is per particle.
+// The passes over neighbour pairs, vectorised: rates and forces, and one for densities that are sums. Everything else in a step is per particle.
 //
 // Symbols: x_ij = x_i - x_j, v_ij = v_i - v_j, V_j = m_j/rho_j, W the kernel, F = (dW/dr)/r, so grad_w_ij = F x_ij.
 // Each pair is evaluated from both of its particles (no scattered writes), so results do not depend on threads.
@@ -59,6 +59,19 @@ inline constexpr int pair_lanes = 32 / static_cast<int>(sizeof(Real));
 template <int Dim, typename Real>
 void compute_rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,
                        double smoothing_length, std::size_t begin, std::size_t end, RateSums<Dim, Real>* sums);
+
+/// Sums over all particles in reach and the particle itself.
+template <typename Real>
+struct DensitySums {
+  Real mass;    ///< sum m_j W_ij, the density by summation [kg/m^Dim]  [S 4.19]
+  Real volume;  ///< sum V_j W_ij, about 1 where the support is full  [S 4.20]
+};
+
+/// The pass before the others where density is a sum: for particles [begin, end), from positions, volumes and densities in
+/// `fields.motion`. `sums` has one entry per particle.
+template <int Dim, typename Real>
+void compute_density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, KernelType kernel, double smoothing_length,
+                          std::size_t begin, std::size_t end, DensitySums<Real>* sums);
 
 /// Strength of the pairwise forces.
 struct ForceParameters {

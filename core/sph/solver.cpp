@@ -75,6 +75,7 @@ template <int Dim, typename Real>
 void Solver<Dim, Real>::prepare() {
   search_neighbours();
   pack_motion(particles_.velocity);
+  sum_densities();
   evaluate_rates();
   integrate_rates(0.0);
   evaluate_forces();
@@ -100,6 +101,7 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
 
   // Density, heat and stress change with the velocity that moved the particles.
   pack_motion(terms_.pair.xsph ? transport_ : particles_.velocity);
+  sum_densities();
   evaluate_rates();
   integrate_rates(dt);
   evaluate_forces();
@@ -197,6 +199,35 @@ void Solver<Dim, Real>::copy_forces_to_images() {
 
 // ------------------------------------------------------------------------------------------------------ rates and forces
 
+/// Where density is a sum, it follows from the positions alone.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::sum_densities() {
+  if (parameters_.density == DensityForm::continuity) return;
+  set_summed_densities(false);
+  // [S 4.20] has V_j from the densities of the step before. Evenly compressed, those would come out again, and nothing would resist:
+  // the volumes follow from the plain sums instead.
+  if (parameters_.density == DensityForm::normalised_summation) set_summed_densities(true);
+}
+
+template <int Dim, typename Real>
+void Solver<Dim, Real>::set_summed_densities(bool normalise) {
+  using Fields = PairFields<Dim, Real>;
+  const std::size_t n = particles_.size();
+  density_sums_.resize(n);
+  parallel_blocks(n, [&](std::size_t begin, std::size_t end) {
+    compute_density_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end, density_sums_.data());
+  });
+  parallel_for_each(n, [&](std::size_t i) {
+    const DensitySums<Real>& sums = density_sums_[i];
+    const double rho = normalise ? static_cast<double>(sums.mass) / sums.volume : sums.mass;
+    particles_.density[i] = rho;
+    Real* record = fields_.motion.data() + i * Fields::motion_stride;
+    record[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
+    record[Fields::density_at] = static_cast<Real>(rho);
+  });
+  copy_motion_to_images();
+}
+
 template <int Dim, typename Real>
 void Solver<Dim, Real>::evaluate_rates() {
   parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
@@ -215,7 +246,7 @@ void Solver<Dim, Real>::integrate_rates(double dt) {
     if (m.heat) particles_.temperature[i] += dt * m.heat->diffusivity * m.density / particles_.density[i] * rate.heat;
     Mat<Dim> corrected_stress = Mat<Dim>::Zero();
     if (terms_.pair.stress) corrected_stress = integrate_stress(i, dt);
-    particles_.density[i] += dt * rate.density_rate;
+    if (parameters_.density == DensityForm::continuity) particles_.density[i] += dt * rate.density_rate;
     if (terms_.pair.xsph)
       for (int a = 0; a < Dim; ++a) xsph_[i][a] = parameters_.xsph * rate.xsph[a];
     pack_forces(i, corrected_stress);
@@ -338,7 +369,7 @@ void Solver<Dim, Real>::check_state(double time) const {
   const bool bounded = !domain.empty();
   const auto broken_term = [&](std::size_t i) -> const char* {
     const double relative_density = p.density[i] / material(i).density;
-    if (!(relative_density > 0.1 && relative_density < 10.0)) return "the density (continuity equation)";
+    if (!(relative_density > 0.1 && relative_density < 10.0)) return "the density";
     if (terms_.pair.heat && !(p.temperature[i] >= 0.0 && std::isfinite(p.temperature[i]))) return "the temperature (heat equation)";
     if (terms_.pair.stress && !p.stress[i].allFinite()) return "the extra stress (rheology)";
     if (!acceleration_[i].allFinite()) return "the acceleration (pressure and stress forces)";

@@ -14,6 +14,13 @@
 
 namespace smelt {
 
+/// How density is had.
+enum class DensityForm {
+  continuity,           ///< d rho_i/dt = sum m_j v_ij . grad_w_ij  [P 4-37]: for free surfaces
+  summation,            ///< rho_i = sum m_j W_ij, the particle itself included  [S 4.19]: never drifts, but falls off towards a free surface
+  normalised_summation  ///< that over sum V_j W_ij with V_j = m_j / sum m_k W_jk  [S 4.20]: falls off less
+};
+
 template <int Dim>
 struct SolverParameters {
   double particle_volume = 0.0;     ///< at rest [m^Dim]; a particle's mass is its material's density times this
@@ -22,6 +29,7 @@ struct SolverParameters {
   Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
   double sound_speed = 0.0;         ///< c [m/s] at rest, of the equation of state; an ideal gas has its own and needs none
   EquationOfState equation_of_state;
+  DensityForm density = DensityForm::continuity;
   double shear_wave_speed = 0.0;    ///< sqrt(G/rho0) of the relaxed stress [m/s]; 0: stress follows the strain rate at once
   double artificial_viscosity = 0.0;  ///< alpha of [P 6-15]
   double xsph = 0.0;                ///< epsilon of [P 6-16]
@@ -75,6 +83,8 @@ class Solver {
   void pack_motion(const std::vector<Vec<Dim>>& velocity);
   void copy_motion_to_images();
   void copy_forces_to_images();
+  void sum_densities();
+  void set_summed_densities(bool normalise);
   void evaluate_rates();
   void integrate_rates(double dt);
   Mat<Dim> integrate_stress(std::size_t i, double dt);
@@ -98,6 +108,7 @@ class Solver {
   PairFields<Dim, Real> fields_;
   Vec<Dim> origin_ = Vec<Dim>::Zero();
   double travelled_ = std::numeric_limits<double>::infinity();  ///< farthest way of any particle since the last search [m]
+  std::vector<DensitySums<Real>> density_sums_;  ///< empty where density follows the continuity equation
   std::vector<RateSums<Dim, Real>> rates_;
   std::vector<std::array<Real, Dim>> force_sums_;
   std::vector<Vec<Dim>> acceleration_;
