@@ -12,7 +12,7 @@ namespace smelt {
 
 namespace {
 
-constexpr std::string_view magic = "smelt checkpoint 1\n";
+constexpr std::string_view magic = "smelt checkpoint 2\n";
 
 class ByteWriter {
  public:

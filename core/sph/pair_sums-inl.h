@@ -213,6 +213,48 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
 }
 
 template <typename PairKernel, int Dim, typename Real>
+void gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const GasForceParameters& parameters,
+                    std::size_t begin, std::size_t end, std::array<Real, Dim>* acceleration, Real* energy_rate) {
+  const Tag<Real> d;
+  const double h = parameters.smoothing_length;
+  const PairKernel kernel(h);
+  constexpr std::size_t lanes = pair_lanes<Real>;
+  using Fields = PairFields<Dim, Real>;
+  constexpr int force_stride = Fields::force_stride(false);
+  const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
+  const auto alpha = hn::Set(d, static_cast<Real>(parameters.artificial_viscosity));
+  const auto two_beta = hn::Set(d, static_cast<Real>(2.0 * parameters.quadratic_artificial_viscosity));
+  for (std::size_t i = begin; i < end; ++i) {
+    Simd<Real> sum[Dim];
+    for (auto& s : sum) s = hn::Zero(d);
+    auto energy = hn::Zero(d);
+    const Real* force_i = fields.force.data() + i * force_stride;
+    const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
+    const std::int32_t* row = lists.index.data() + lists.begin[i];
+    const std::size_t n = lists.padded[i];
+    for (std::size_t k = 0; k < n; k += lanes) {
+      const Neighbours<Dim, Real> pair(motion_i, fields.motion.data(), row + k);
+      Simd<Real> force[force_stride];
+      load_records<2, force_stride>(fields.force.data(), row + k, force);
+      const auto r2 = dot<Dim, Real>(pair.x_ij, pair.x_ij);
+      const auto v_x = dot<Dim, Real>(pair.v_ij, pair.x_ij);
+      // Twice c_ij and twice rho_ij: the halves cancel but for beta's.
+      const auto mu = hn::Div(hn::Mul(hn::Set(d, static_cast<Real>(h)), hn::Min(v_x, hn::Zero(d))), hn::Add(r2, soft));
+      const auto sound = hn::Add(hn::Set(d, force_i[1]), force[1]);
+      const auto density = hn::Add(hn::Set(d, motion_i[Fields::density_at]), pair.density);
+      const auto pi = hn::Div(hn::Mul(mu, hn::MulSub(two_beta, mu, hn::Mul(alpha, sound))), density);
+      const auto pressure = hn::Add(hn::Add(hn::Set(d, force_i[0]), force[0]), pi);
+      const auto mass_f = hn::Mul(hn::Mul(pair.density, pair.volume), kernel.gradient_over_r(r2));
+      const auto weight = hn::Mul(mass_f, pressure);
+      for (int a = 0; a < Dim; ++a) sum[a] = hn::NegMulAdd(weight, pair.x_ij[a], sum[a]);
+      energy = hn::MulAdd(weight, v_x, energy);
+    }
+    for (int a = 0; a < Dim; ++a) acceleration[i][a] = sum_lanes<Real>(sum[a]);
+    energy_rate[i] = Real(0.5) * sum_lanes<Real>(energy);
+  }
+}
+
+template <typename PairKernel, int Dim, typename Real>
 void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, double h, std::size_t begin,
                   std::size_t end, DensitySums<Real>* sums) {
   const Tag<Real> d;
@@ -287,6 +329,14 @@ void with_kernel(KernelType type, const Run& run) {
     with_kernel<Dim, Real>(terms.kernel, [&](auto kernel) HWY_ATTR {                                                   \
       select_force_sums<typename decltype(kernel)::type, Dim, Real>(fields, lists, terms, parameters, begin, end,      \
                                                                     acceleration);                                     \
+    });                                                                                                                \
+  }                                                                                                                    \
+  inline void gas_force_sums_##suffix(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,                \
+                                      KernelType type, const GasForceParameters& parameters, std::size_t begin,        \
+                                      std::size_t end, std::array<Real, Dim>* acceleration, Real* energy_rate) {       \
+    with_kernel<Dim, Real>(type, [&](auto kernel) HWY_ATTR {                                                           \
+      gas_force_sums<typename decltype(kernel)::type, Dim, Real>(fields, lists, parameters, begin, end, acceleration,  \
+                                                                 energy_rate);                                         \
     });                                                                                                                \
   }                                                                                                                    \
   inline void density_sums_##suffix(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,                  \

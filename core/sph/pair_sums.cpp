@@ -15,6 +15,7 @@ namespace smelt {
 #define SMELT_EXPORT(suffix)           \
   HWY_EXPORT(rate_sums_##suffix);      \
   HWY_EXPORT(force_sums_##suffix);     \
+  HWY_EXPORT(gas_force_sums_##suffix); \
   HWY_EXPORT(density_sums_##suffix);
 SMELT_EXPORT(3f)
 SMELT_EXPORT(3d)
@@ -31,6 +32,12 @@ SMELT_EXPORT(1d)
                           const ForceParameters& parameters, std::size_t begin, std::size_t end,                       \
                           std::array<Real, Dim>* acceleration) {                                                       \
     HWY_DYNAMIC_DISPATCH(force_sums_##suffix)(fields, lists, terms, parameters, begin, end, acceleration);             \
+  }                                                                                                                    \
+  template <>                                                                                                          \
+  void compute_gas_force_sums<Dim, Real>(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, KernelType kernel,     \
+                          const GasForceParameters& parameters, std::size_t begin, std::size_t end,                    \
+                          std::array<Real, Dim>* acceleration, Real* energy_rate) {                                    \
+    HWY_DYNAMIC_DISPATCH(gas_force_sums_##suffix)(fields, lists, kernel, parameters, begin, end, acceleration, energy_rate); \
   }                                                                                                                    \
   template <>                                                                                                          \
   void compute_density_sums<Dim, Real>(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, KernelType kernel,       \

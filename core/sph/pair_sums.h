@@ -32,7 +32,7 @@ struct PairFields {
   /// Position [m], velocity [m/s], volume V [m^Dim], density rho [kg/m^Dim].
   static constexpr int motion_stride = padded_record(2 * Dim + 2);
   static constexpr int velocity_at = Dim, volume_at = 2 * Dim, density_at = 2 * Dim + 1;
-  /// p/rho^2, then S L row-major [Pa] where the scene has a stress.
+  /// p/rho^2, then S L row-major [Pa] where the scene has a stress, or the sound speed [m/s] of an ideal gas.
   static constexpr int force_stride(bool with_stress) { return padded_record(with_stress ? 1 + Dim * Dim : 1); }
 
   std::vector<Real> motion;       ///< n records of motion_stride
@@ -89,5 +89,21 @@ template <int Dim, typename Real>
 void compute_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,
                         const ForceParameters& parameters, std::size_t begin, std::size_t end,
                         std::array<Real, Dim>* acceleration);
+
+/// Strength of the artificial viscosity of a gas, Pi_ij = (-alpha c_ij mu_ij + beta mu_ij^2)/rho_ij where particles approach, else 0, with
+/// mu_ij = h v_ij.x_ij/(r^2 + 0.01 h^2) and c_ij, rho_ij the pair's means  [S 4.40-4.46; 4.41 has r for r^2].
+struct GasForceParameters {
+  double smoothing_length = 0.0;                ///< h [m]
+  double artificial_viscosity = 0.0;            ///< alpha [-]
+  double quadratic_artificial_viscosity = 0.0;  ///< beta [-]
+};
+
+/// Second pass of an ideal gas for particles [begin, end): the accelerations - sum m_j (p_i/rho_i^2 + p_j/rho_j^2 + Pi_ij) grad_w_ij
+/// [m/s^2], and 1/2 sum m_j (p_i/rho_i^2 + p_j/rho_j^2 + Pi_ij) v_ij.grad_w_ij, the rate of specific internal energy [W/kg], which is
+/// what kinetic energy loses  [S 4.47-4.48].
+template <int Dim, typename Real>
+void compute_gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, KernelType kernel,
+                            const GasForceParameters& parameters, std::size_t begin, std::size_t end,
+                            std::array<Real, Dim>* acceleration, Real* energy_rate);
 
 }  // namespace smelt

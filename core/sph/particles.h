@@ -51,6 +51,7 @@ struct Particles {
   std::vector<double> temperature;         ///< [K], or empty
   std::vector<Symmetric<Dim>> stress;      ///< extra stress S [Pa], or empty in an inviscid scene
   std::vector<float> viscosity;            ///< eta = |S| / gdot at the last step [Pa s], or empty in an inviscid scene
+  std::vector<double> internal_energy;     ///< of an ideal gas, specific, e [J/kg]; else empty
 
   std::size_t size() const { return position.size(); }
 };
@@ -66,6 +67,7 @@ void for_each_array(Set& particles, const Visit& visit) {
   visit(particles.temperature);
   visit(particles.stress);
   visit(particles.viscosity);
+  visit(particles.internal_energy);
 }
 
 }  // namespace smelt

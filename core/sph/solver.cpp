@@ -45,7 +45,8 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
       particles_(std::move(particles)) {
   const std::size_t n = particles_.size();
   if (n == 0) fail("simulation: there are no particles");
-  if (!(parameters_.particle_volume > 0.0) || !(parameters_.smoothing_length > 0.0) || !(parameters_.sound_speed > 0.0))
+  terms_.gas = parameters_.equation_of_state.law == PressureLaw::ideal_gas;
+  if (!(parameters_.particle_volume > 0.0) || !(parameters_.smoothing_length > 0.0) || !(parameters_.sound_speed > 0.0 || terms_.gas))
     fail("simulation: particle volume, smoothing length and sound speed must be > 0, are {}, {}, {}",
          parameters_.particle_volume, parameters_.smoothing_length, parameters_.sound_speed);
   CHECK_EQ(particles_.density.size(), n);
@@ -62,7 +63,14 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
     particles_.stress.resize(n, Symmetric<Dim>::Zero());
     particles_.viscosity.resize(n, 0.0F);
   }
-  acceleration_.resize(n);
+  CHECK_EQ(particles_.internal_energy.size(), terms_.gas ? n : 0);
+  if (terms_.gas && (terms_.pair.stress || terms_.pair.heat)) fail("simulation: an ideal gas has no viscosity and conducts no heat");
+  if (terms_.gas && !(parameters_.equation_of_state.adiabatic_index > 1.0))
+    fail("simulation: the adiabatic index must be > 1, is {}", parameters_.equation_of_state.adiabatic_index);
+  if (!terms_.gas && parameters_.quadratic_artificial_viscosity != 0.0)
+    fail("simulation: quadratic artificial viscosity is for an ideal gas; shocks in liquids are weak");
+  if (terms_.gas) energy_rate_.resize(n);
+  acceleration_.resize(n, Vec<Dim>::Zero());
   force_sums_.resize(n);
   rates_.resize(n);
   if (terms_.pair.xsph) transport_.resize(n);
@@ -120,6 +128,11 @@ void Solver<Dim, Real>::search_neighbours() {
   const auto order = compute_cell_order<Dim>(particles_.position, particles_.id, radius);
   for_each_array(particles_, [&](auto& values) { reorder(values, order); });
   reorder(transport_, order);
+  if (terms_.gas) {
+    // The rates of the last step look half a kick ahead (pack_gas).
+    reorder(acceleration_, order);
+    reorder(energy_rate_, order);
+  }
   if (terms_.periodic)
     images_ = build_periodic_neighbour_lists<Dim>(parameters_.period, particles_.position, particles_.id, radius, pair_lanes<Real>, lists_);
   else
@@ -187,6 +200,25 @@ void Solver<Dim, Real>::pack_forces(std::size_t i, const Mat<Dim>& corrected_str
       for (int b = 0; b < Dim; ++b) force[1 + a * Dim + b] = static_cast<Real>(corrected_stress(a, b));
 }
 
+/// The same for an ideal gas after a step of dt. Its forces depend on energy and velocity, so both are wanted at the step's end: half a
+/// kick ahead, by the rates of the step before. What particles lose as kinetic energy they then gain as heat to second order in dt.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::pack_gas(std::size_t i, double dt) {
+  using Fields = PairFields<Dim, Real>;
+  const double ahead = 0.5 * dt;
+  const Vec<Dim> velocity = particles_.velocity[i] + ahead * acceleration_[i];
+  const double e = particles_.internal_energy[i] + ahead * energy_rate_[i];
+  const double rho = particles_.density[i];
+  Real* motion = fields_.motion.data() + i * Fields::motion_stride;
+  for (int a = 0; a < Dim; ++a) motion[Fields::velocity_at + a] = static_cast<Real>(velocity[a]);
+  motion[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
+  motion[Fields::density_at] = static_cast<Real>(rho);
+  Real* force = fields_.force.data() + i * Fields::force_stride(false);
+  const EquationOfState& state = parameters_.equation_of_state;
+  force[0] = static_cast<Real>(compute_pressure(state, 0.0, 1.0, rho, e) / (rho * rho));
+  force[1] = static_cast<Real>(compute_sound_speed(state, 0.0, 1.0, rho, e));
+}
+
 template <int Dim, typename Real>
 void Solver<Dim, Real>::copy_forces_to_images() {
   copy_motion_to_images();
@@ -249,7 +281,10 @@ void Solver<Dim, Real>::integrate_rates(double dt) {
     if (parameters_.density == DensityForm::continuity) particles_.density[i] += dt * rate.density_rate;
     if (terms_.pair.xsph)
       for (int a = 0; a < Dim; ++a) xsph_[i][a] = parameters_.xsph * rate.xsph[a];
-    pack_forces(i, corrected_stress);
+    if (terms_.gas)
+      pack_gas(i, dt);
+    else
+      pack_forces(i, corrected_stress);
   });
   copy_forces_to_images();
 }
@@ -282,8 +317,12 @@ Mat<Dim> Solver<Dim, Real>::integrate_stress(std::size_t i, double dt) {
 template <int Dim, typename Real>
 void Solver<Dim, Real>::evaluate_forces() {
   const ForceParameters force{parameters_.smoothing_length, parameters_.artificial_viscosity, parameters_.sound_speed};
+  const GasForceParameters gas{parameters_.smoothing_length, parameters_.artificial_viscosity, parameters_.quadratic_artificial_viscosity};
   parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
-    compute_force_sums<Dim, Real>(fields_, lists_, terms_.pair, force, begin, end, force_sums_.data());
+    if (terms_.gas)
+      compute_gas_force_sums<Dim, Real>(fields_, lists_, terms_.pair.kernel, gas, begin, end, force_sums_.data(), energy_rate_.data());
+    else
+      compute_force_sums<Dim, Real>(fields_, lists_, terms_.pair, force, begin, end, force_sums_.data());
     for (std::size_t i = begin; i < end; ++i)
       for (int a = 0; a < Dim; ++a) acceleration_[i][a] = force_sums_[i][a] + parameters_.gravity[a];
   });
@@ -294,6 +333,8 @@ void Solver<Dim, Real>::evaluate_forces() {
 template <int Dim, typename Real>
 void Solver<Dim, Real>::kick(double dt) {
   parallel_for_each(particles_.size(), [&](std::size_t i) { particles_.velocity[i] += dt * acceleration_[i]; });
+  if (terms_.gas)
+    parallel_for_each(particles_.size(), [&](std::size_t i) { particles_.internal_energy[i] += dt * energy_rate_[i]; });
 }
 
 template <int Dim, typename Real>
@@ -326,7 +367,7 @@ double Solver<Dim, Real>::fastest_sound() const {
   return deterministic_reduce(
       particles_.size(), 0.0,
       [&](std::size_t i) {
-        return compute_sound_speed(state, parameters_.sound_speed, material(i).density, particles_.density[i], 0.0);
+        return compute_sound_speed(state, parameters_.sound_speed, material(i).density, particles_.density[i], internal_energy(i));
       },
       [](double a, double b) { return std::max(a, b); });
 }
@@ -369,7 +410,10 @@ void Solver<Dim, Real>::check_state(double time) const {
   const bool bounded = !domain.empty();
   const auto broken_term = [&](std::size_t i) -> const char* {
     const double relative_density = p.density[i] / material(i).density;
-    if (!(relative_density > 0.1 && relative_density < 10.0)) return "the density";
+    // A gas has no density at rest; a liquid has no business far from it.
+    if (!(terms_.gas ? relative_density > 0.0 && std::isfinite(relative_density) : relative_density > 0.1 && relative_density < 10.0))
+      return "the density";
+    if (terms_.gas && !(p.internal_energy[i] > 0.0 && std::isfinite(p.internal_energy[i]))) return "the internal energy";
     if (terms_.pair.heat && !(p.temperature[i] >= 0.0 && std::isfinite(p.temperature[i]))) return "the temperature (heat equation)";
     if (terms_.pair.stress && !p.stress[i].allFinite()) return "the extra stress (rheology)";
     if (!acceleration_[i].allFinite()) return "the acceleration (pressure and stress forces)";

@@ -32,6 +32,7 @@ struct SolverParameters {
   DensityForm density = DensityForm::continuity;
   double shear_wave_speed = 0.0;    ///< sqrt(G/rho0) of the relaxed stress [m/s]; 0: stress follows the strain rate at once
   double artificial_viscosity = 0.0;  ///< alpha of [P 6-15]
+  double quadratic_artificial_viscosity = 0.0;  ///< beta of [S 4.40], of an ideal gas alone
   double xsph = 0.0;                ///< epsilon of [P 6-16]
   double courant = 0.25;            ///< C of the time step
   double min_time_step = 1e-9;      ///< [s]; a smaller one is an error, not a slower simulation
@@ -47,6 +48,7 @@ struct SolverTerms {
   PairTerms pair;
   bool relaxed = false;  ///< the stress is relaxed, with the shear wave speed as its stiffness
   bool periodic = false;  ///< some axis repeats
+  bool gas = false;       ///< an ideal gas: particles carry internal energy
 };
 
 /// Advances particles in time by leap-frog (kick-drift-kick). Real (float or double) is what the pair loops compute in; the state is
@@ -54,7 +56,8 @@ struct SolverTerms {
 template <int Dim, typename Real>
 class Solver {
  public:
-  /// Throws Error where the parameters cannot be (non-positive lengths or densities).
+  /// Throws Error where the parameters cannot be (non-positive lengths or densities, a viscous or heat-conducting ideal gas). The
+  /// particles of an ideal gas bring their internal energy.
   Solver(const SolverParameters<Dim>& parameters, std::vector<Material> materials, Colliders<Dim> colliders,
          Particles<Dim> particles);
 
@@ -81,6 +84,7 @@ class Solver {
  private:
   void search_neighbours();
   void pack_motion(const std::vector<Vec<Dim>>& velocity);
+  void pack_gas(std::size_t i, double dt);
   void copy_motion_to_images();
   void copy_forces_to_images();
   void sum_densities();
@@ -93,6 +97,7 @@ class Solver {
   void kick(double dt);
   void drift(double dt);
   double fastest_sound() const;
+  double internal_energy(std::size_t i) const { return terms_.gas ? particles_.internal_energy[i] : 0.0; }
   TimeStepInput time_step_input() const;
   void check_state(double time) const;
 
@@ -112,6 +117,7 @@ class Solver {
   std::vector<RateSums<Dim, Real>> rates_;
   std::vector<std::array<Real, Dim>> force_sums_;
   std::vector<Vec<Dim>> acceleration_;
+  std::vector<Real> energy_rate_;  ///< of an ideal gas [W/kg], or empty
   std::vector<Vec<Dim>> transport_;  ///< velocity that particles move with: XSPH's where it is on, else empty
   std::vector<Vec<Dim>> xsph_;       ///< correction at the last rate evaluation, or empty
 };
