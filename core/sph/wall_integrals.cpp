@@ -170,10 +170,10 @@ double subtended_angle(const LinePiece& p, double a) {
   return a == 0.0 ? 0.0 : std::atan2(a * (p.t1 - p.t0), a * a + p.t0 * p.t1);
 }
 
-/// Takes away what lies outside the edge, within the support: area -int ring(r) dphi, first -outward int ring(r) dt,
-/// and solid -int height cone(r) dphi. With rho^2 = r^2 - height^2 = a^2 + t^2, dphi = a dt/rho^2, so J_k = int r^k
-/// dphi follows from the powers I_k = int r^k dt:  J_k = a I_(k-2) + height^2 J_(k-2),  and height J_(-1) = psi =
-/// [atan(height t/(a r))].
+/// Takes away what lies outside the edge, within the support: area by int ring(r) dphi, first by outward int ring(r)
+/// dt, solid by int height cone(r) dphi. With rho^2 = r^2 - height^2 = a^2 + t^2 and dphi = a dt/rho^2, the angular
+/// moments J_k = int r^k dphi follow from I_k = int r^k dt:
+///   J_k = a I_(k-2) + height^2 J_(k-2),  height J_(-1) = psi = [atan(height t/(a r))].
 void subtract_outside(const RadialTerm& term, double height, const Edge& edge, const LinePiece& p,
                       FacetIntegrals<3>& sum) {
   const double a = edge.a;

@@ -1,16 +1,14 @@
 #pragma once
-// Integrals of a smoothing kernel over a solid that is bounded by facets: triangles in 3D, segments in 2D, points in
-// 1D.
+// Integrals of a smoothing kernel over a solid bounded by facets: triangles in 3D, segments in 2D, points in 1D.
 //
 // Semi-analytic walls [Ferrand 2013, Mayrhofer 2015] need integrals of W over the part of a solid inside a kernel's
 // support. The divergence theorem makes each a sum over facets that is exact, at edges and corners too. With x0 the
 // kernel's centre and y = x - x0:
-//   int_solid grad_i W dV        = -sum_f area_f n_f                             [1/m]
-//   int_solid y (x) grad_i W dV  = sum_f (-first_f (x) n_f + solid_f I)          [-]
-//   int_solid W dV               = sum_f solid_f                                 [-]  for x0 outside the solid; less 1
-//   inside
+//   int_solid grad_i W dV        = -sum_f area_f n_f                     [1/m]
+//   int_solid y (x) grad_i W dV  = sum_f (-first_f (x) n_f + solid_f I)  [-]
+//   int_solid W dV               = sum_f solid_f                         [-]
 // where n_f points out of the solid, into the fluid, and grad_i differentiates with respect to x0
-// (docs/conventions.md).
+// (docs/conventions.md). For x0 inside the solid sum_f solid_f falls short by 1.
 //
 // Every kernel is a polynomial in r between its knots, and every integral below has a closed form: nothing is sampled.
 
@@ -66,12 +64,12 @@ struct FacetIntegrals {
   double solid = 0.0;  ///< int of W over the cone of rays from x0 that lies beyond f [-]; negative behind the facet
 };
 
-/// Integrals over `facet` of the kernel centred at `point`; exact but for rounding (about 1e-13 of a whole plane's
-/// values). `normal`: unit, of the facet, on whichever side the caller calls front. The corners may go round either
-/// way. In the facet's plane `solid` is its limit from the front along the normal: 1/2 on an infinite wall; rounding
-/// decides it where the point is on the very outline of a wall (shared edges of coplanar triangles cancel). A facet
-/// without extent (an area below 1e-14 of its longest edge squared in 3D) adds nothing, and so does one outside the
-/// support.
+/// Integrals over `facet` of the kernel centred at `point`; exact but for rounding (2e-13 at worst on random triangles
+/// with h = 1, against long double). `normal`: unit, of the facet, on whichever side the caller calls front; the
+/// corners may go round either way. In the facet's plane `solid` is its limit from the front along the normal: 1/2 on
+/// an infinite wall, also where triangles of one normal meet. On the outline of a wall it jumps, and rounding decides.
+/// A facet without extent adds nothing (in 3D: an area below 1e-14 of the longest edge squared), nor does one outside
+/// the support.
 template <int Dim>
 FacetIntegrals<Dim> integrate_facet(const WallKernel<Dim>& kernel, const Simplex<Dim>& facet, const Vec<Dim>& normal,
                                     const Vec<Dim>& point);

@@ -130,7 +130,7 @@ void expect_near(const SolidIntegrals<Dim>& got, const SolidIntegrals<Dim>& want
 /// latter.
 template <int Dim>
 constexpr int n_panels = Dim == 1   ? 2000
-                         : Dim == 2 ? 800
+                         : Dim == 2 ? 400
                                     : 24;
 template <int Dim>
 constexpr double oracle_tolerance = Dim == 1   ? 1e-9
