@@ -21,7 +21,8 @@ double Reference::at(double x, std::size_t c) const {
   const bool rising = xs.front() < xs.back();
   CHECK_GE(x, rising ? xs.front() : xs.back());
   CHECK_LE(x, rising ? xs.back() : xs.front());
-  const auto above = std::find_if(xs.begin() + 1, xs.end() - 1, [&](double value) { return rising ? value >= x : value <= x; });
+  const auto above =
+      std::find_if(xs.begin() + 1, xs.end() - 1, [&](double value) { return rising ? value >= x : value <= x; });
   const auto k = static_cast<std::size_t>(above - xs.begin());
   const double t = (x - xs[k - 1]) / (xs[k] - xs[k - 1]);
   return (1.0 - t) * ys[k - 1] + t * ys[k];
@@ -46,7 +47,8 @@ Reference read_reference(const std::string& name) {
       fail("{}:{}: {} numbers where the rows before have {}", path, n, row.size(), reference.column.size());
     for (std::size_t c = 0; c < row.size(); ++c) reference.column[c].push_back(row[c]);
   }
-  if (reference.column.size() < 2 || reference.column[0].size() < 2) fail("{}: needs two columns and two rows of numbers", path);
+  if (reference.column.size() < 2 || reference.column[0].size() < 2)
+    fail("{}: needs two columns and two rows of numbers", path);
   return reference;
 }
 
@@ -90,16 +92,17 @@ std::string cell(const std::optional<double>& value, const char* none) {
 
 void report_row(const Row& row) {
   for (const std::string* text : {&row.problem, &row.quantity, &row.resolution})
-    CHECK_EQ(text->find_first_of(",;|\n\""), std::string::npos);
-  fmt::print("[ MEASURED ] {}: {} at {}: {:.3g}, bar {}; order {}, at least {}\n", row.problem, row.quantity, row.resolution,
-             row.error, cell(row.bar, "none"), cell(row.order, "not measured"), cell(row.least_order, "none"));
+    CHECK_EQ(text->find_first_of(",|\n\""), std::string::npos);
+  fmt::print("[ MEASURED ] {}: {} at {}: {:.3g}, bar {}; order {}, at least {}\n", row.problem, row.quantity,
+             row.resolution, row.error, cell(row.bar, "none"), cell(row.order, "not measured"),
+             cell(row.least_order, "none"));
   if (const char* folder = std::getenv("SMELT_ACCURACY_FOLDER")) {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     CHECK(test != nullptr);
     const auto path = std::filesystem::path(folder) / fmt::format("{}.{}.csv", test->test_suite_name(), test->name());
     std::ofstream file(path, std::ios::app);
-    file << fmt::format("{},{},{},{:.3g},{},{},{}\n", row.problem, row.quantity, row.resolution, row.error, cell(row.bar, ""),
-                        cell(row.order, ""), cell(row.least_order, ""));
+    file << fmt::format("{},{},{},{:.3g},{},{},{}\n", row.problem, row.quantity, row.resolution, row.error,
+                        cell(row.bar, ""), cell(row.order, ""), cell(row.least_order, ""));
     if (!file.flush()) fail("{}: cannot be written", path.string());
   }
   if (row.bar) {

@@ -13,7 +13,8 @@ namespace {
 
 TEST(Measure, EveryReferenceCanBeRead) {
   int n = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(std::string(SMELT_SOURCE_DIR) + "/tests/data/reference")) {
+  for (const auto& entry :
+       std::filesystem::directory_iterator(std::string(SMELT_SOURCE_DIR) + "/tests/data/reference")) {
     if (entry.path().extension() != ".csv") continue;
     ++n;
     EXPECT_NO_THROW(read_reference(entry.path().stem().string())) << entry.path();

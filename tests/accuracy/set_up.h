@@ -10,7 +10,8 @@
 
 namespace smelt {
 
-/// A number in [-1, 1) that belongs to a lattice site and an axis: the same wherever the site is visited from (splitmix64).
+/// A number in [-1, 1) that belongs to a lattice site and an axis: the same wherever the site is visited from
+/// (splitmix64).
 inline double site_noise(std::int64_t i, std::int64_t j, std::int64_t k, int axis) {
   std::uint64_t z = static_cast<std::uint64_t>(((i * 1000003 + j) * 1000003 + k) * 3 + axis) + 0x9e3779b97f4a7c15ULL;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -28,8 +29,8 @@ void add_particle(Particles<Dim>& particles, const Vec<Dim>& position, const Vec
   particles.density.push_back(density);
 }
 
-/// Particles at rest on the sites lower + (i + 1/2) spacing of the box that satisfy `inside(site)`, each moved by up to `jitter`
-/// spacings along every axis. Lengths in metres, `density` in kg/m^Dim.
+/// Particles at rest on the sites lower + (i + 1/2) spacing of the box that satisfy `inside(site)`, each moved by up to
+/// `jitter` spacings along every axis. Lengths in metres, `density` in kg/m^Dim.
 template <int Dim, typename Inside>
 Particles<Dim> make_lattice(const Box<Dim>& box, double spacing, double density, double jitter, const Inside& inside) {
   std::array<std::int64_t, 3> n{1, 1, 1};
@@ -65,7 +66,8 @@ Particles<Dim> make_ball(double radius, double spacing, double density, double j
   return make_lattice<Dim>(box, spacing, density, jitter, [&](const Vec<Dim>& x) { return x.norm() <= radius; });
 }
 
-/// Volume and smoothing length (1.2 spacings) of particles `spacing` [m] apart, and the sound speed [m/s]; nothing else on.
+/// Volume and smoothing length (1.2 spacings) of particles `spacing` [m] apart, and the sound speed [m/s]; nothing else
+/// on.
 template <int Dim>
 SolverParameters<Dim> make_parameters(double spacing, double sound_speed) {
   SolverParameters<Dim> parameters;
@@ -90,7 +92,8 @@ inline Material newtonian_material(double density, double viscosity) {
 }
 
 /// Souza Mendes-Dutra with yield stress [Pa], consistency [Pa s^index], index and jump number J.
-inline Material viscoplastic_material(double density, double yield_stress, double consistency, double index, double jump) {
+inline Material viscoplastic_material(double density, double yield_stress, double consistency, double index,
+                                      double jump) {
   Material m{"viscoplastic", density, {}, std::nullopt};
   m.rheology.yield_stress = {yield_stress, yield_stress};
   m.rheology.consistency = {consistency, consistency};
@@ -99,11 +102,13 @@ inline Material viscoplastic_material(double density, double yield_stress, doubl
   return m;
 }
 
-/// Advances a prepared solver by `duration` [s] from `start` [s], which only serves messages. Returns the number of steps.
+/// Advances a prepared solver by `duration` [s] from `start` [s], which only serves messages. Returns the number of
+/// steps.
 template <int Dim, typename Real>
 int advance_by(Solver<Dim, Real>& solver, double duration, double start = 0.0) {
   int n = 0;
-  for (double remaining = duration; remaining > 0.0; ++n) remaining -= solver.step(remaining, start + duration - remaining).dt;
+  for (double remaining = duration; remaining > 0.0; ++n)
+    remaining -= solver.step(remaining, start + duration - remaining).dt;
   return n;
 }
 
