@@ -30,11 +30,11 @@ Material soft_material() {
   return viscoplastic_material(density, 100.0, 50.0, 0.5, 1000.0);
 }
 
-/// Spins and stretches: v = (0.8 x - 2 y, 2 x - 0.8 y, 0) in 1/s.
+/// Spins and stretches: v = (4 x - 6 y, 6 x - 4 y, 0) in 1/s, far beyond what the yield stress of soft_material holds.
 void set_in_motion(Particles<3>& p) {
   for (std::size_t i = 0; i < p.size(); ++i) {
     const Vec3& x = p.position[i];
-    p.velocity[i] = Vec3(0.8 * x[0] - 2.0 * x[1], 2.0 * x[0] - 0.8 * x[1], 0.0);
+    p.velocity[i] = Vec3(4.0 * x[0] - 6.0 * x[1], 6.0 * x[0] - 4.0 * x[1], 0.0);
   }
 }
 
@@ -77,11 +77,18 @@ TEST(Extremes, ViscosityJumpsAMillionfold) {
 }
 
 TEST(Extremes, JumpNumberFromOneTo1e5) {
+  Watched worst;
+  std::size_t n = 0;
   for (const double jump : {1.0, 10.0, 1e2, 1e3, 1e4, 1e5}) {
-    Solver<3, float> solver(all_terms(), {viscoplastic_material(density, 100.0, 50.0, 0.5, jump)}, {}, moving_block(5));
+    SCOPED_TRACE(jump);
+    Solver<3, float> solver(all_terms(), {viscoplastic_material(density, 100.0, 50.0, 0.5, jump)}, {}, moving_block(6));
     const Watched seen = watch(solver, 0.3);
-    report_watched(fmt::format("block with J = {:g}", jump), seen, solver.particles().size(), energy_bar);
+    EXPECT_LE(seen.energy_gain, energy_bar);
+    worst = {std::max(worst.energy_gain, seen.energy_gain), std::max(worst.density_error, seen.density_error),
+             std::max(worst.steps, seen.steps)};
+    n = solver.particles().size();
   }
+  report_watched("blocks with J from 1 to 10^5; the worst", worst, n, energy_bar);
 }
 
 TEST(Extremes, ThreadOneParticleThick) {
@@ -112,7 +119,7 @@ TEST(Extremes, HotBesideCold) {
   for (const Vec3& x : p.position) p.temperature.push_back(x[0] < 0.0 ? 1.0 : 5000.0);
   Material m = soft_material();
   m.rheology.jump_number = ThermalRange{1e5, 1.0};
-  m.heat = HeatProperties{1e-2, 300.0, 400.0};
+  m.heat = HeatProperties{2.0, 300.0, 400.0};  // conduction, not sound, limits the step
   Solver<3, float> solver(all_terms(), {m}, {}, std::move(p));
   const Watched seen = watch(solver, 0.3);
   report_watched("1 K beside 5000 K", seen, solver.particles().size(), energy_bar);
