@@ -1,0 +1,81 @@
+#pragma once
+// Runs a scene and keeps the worst that was seen on the way.
+
+#include "core/sph/solver.h"
+#include "tests/accuracy/measure.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace smelt {
+
+/// Kinetic energy, -sum m g.x, compression m c^2 (ln(rho/rho0) + rho0/rho - 1) and, where the stress is relaxed, its
+/// spring V S:S/(4 G) [J]: what no term of the method may add to.
+template <int Dim, typename Real>
+double total_energy(const Solver<Dim, Real>& solver) {
+  const Particles<Dim>& p = solver.particles();
+  const SolverParameters<Dim>& parameters = solver.parameters();
+  double energy = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const double m = solver.mass(i), rho0 = solver.material(i).density, c = parameters.sound_speed;
+    energy += 0.5 * m * p.velocity[i].squaredNorm() - m * parameters.gravity.dot(p.position[i]);
+    energy += m * c * c * (std::log(p.density[i] / rho0) + rho0 / p.density[i] - 1.0);
+    if (!p.stress.empty() && parameters.shear_wave_speed > 0.0) {
+      const double modulus = rho0 * parameters.shear_wave_speed * parameters.shear_wave_speed;
+      energy += m / p.density[i] * to_matrix<Dim>(p.stress[i]).squaredNorm() / (4.0 * modulus);
+    }
+  }
+  return energy;
+}
+
+template <int Dim, typename Real>
+double kinetic_energy(const Solver<Dim, Real>& solver) {
+  double energy = 0.0;
+  for (std::size_t i = 0; i < solver.particles().size(); ++i)
+    energy += 0.5 * solver.mass(i) * solver.particles().velocity[i].squaredNorm();
+  return energy;
+}
+
+/// The worst of a run.
+struct Watched {
+  double energy_gain = 0.0;    ///< largest E(t) - E(0), over the kinetic energy at the start
+  double density_error = 0.0;  ///< largest |rho/rho0 - 1| of any particle, at any time
+  int steps = 0;
+};
+
+/// Advances a scene from rest density for `duration` [s]. The solver itself throws where something is not finite.
+template <int Dim, typename Real>
+Watched watch(Solver<Dim, Real>& solver, double duration) {
+  Watched seen;
+  solver.prepare();
+  const double start = total_energy(solver), scale = kinetic_energy(solver);
+  for (double remaining = duration; remaining > 0.0; ++seen.steps) {
+    remaining -= solver.step(remaining, duration - remaining).dt;
+    const double gain = (total_energy(solver) - start) / scale;
+    if (!(gain <= seen.energy_gain)) seen.energy_gain = gain;  // a NaN stays one
+    for (std::size_t i = 0; i < solver.particles().size(); ++i)
+      seen.density_error =
+          std::max(seen.density_error, std::abs(solver.particles().density[i] / solver.material(i).density - 1.0));
+  }
+  return seen;
+}
+
+/// Reports both figures: no more energy than `energy_bar` of the kinetic energy at the start may appear; the density
+/// error is stated.
+inline void report_watched(const std::string& problem, const Watched& seen, std::size_t n_particles,
+                           double energy_bar) {
+  const std::string resolution = fmt::format("{} particles {} steps", n_particles, seen.steps);
+  report_row({.problem = problem,
+              .quantity = "energy gained / kinetic at start",
+              .resolution = resolution,
+              .error = seen.energy_gain,
+              .bar = energy_bar});
+  report_row(
+      {.problem = problem, .quantity = "largest density error", .resolution = resolution, .error = seen.density_error});
+}
+
+}  // namespace smelt
