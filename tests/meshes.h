@@ -3,11 +3,13 @@
 
 #include "core/geometry/surface_mesh.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <fstream>
 #include <map>
+#include <numbers>
 #include <sstream>
 #include <string>
 
@@ -48,6 +50,24 @@ inline TriangleMesh make_sphere(const Vec3& centre, double radius, int levels) {
   return mesh;
 }
 
+/// A square plate 1 m wide and 0.03 m thick that lies along no axis.
+inline TriangleMesh make_tilted_plate() {
+  TriangleMesh mesh = make_box({-0.5, -0.015, -0.5}, {0.5, 0.015, 0.5});
+  const Mat3 turn = (Eigen::AngleAxisd(0.4, Vec3::UnitX()) * Eigen::AngleAxisd(0.7, Vec3::UnitZ())).toRotationMatrix();
+  for (Vec3& v : mesh.vertices) v = turn * v;
+  return mesh;
+}
+
+/// A ball of 1 m radius with 98 spikes as long as that, each a fine edge wide at its foot and a point at its tip.
+inline TriangleMesh make_spiky_ball() {
+  TriangleMesh mesh = make_sphere(Vec3::Zero(), 1.0, 2);
+  const std::size_t n_spikes = mesh.vertices.size();
+  for (int level = 0; level < 2; ++level) mesh = subdivide(mesh);
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+    mesh.vertices[v] = (v < n_spikes ? 2.0 : 1.0) * mesh.vertices[v].normalized();
+  return mesh;
+}
+
 inline TriangleMesh turned_inside_out(TriangleMesh mesh) {
   for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
   return mesh;
@@ -59,6 +79,17 @@ inline TriangleMesh joined(TriangleMesh a, const TriangleMesh& b) {
   a.vertices.insert(a.vertices.end(), b.vertices.begin(), b.vertices.end());
   for (const auto& t : b.triangles) a.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
   return a;
+}
+
+/// The winding number as the sum of solid angles over 4 pi. [Van Oosterom & Strackee 1983]
+inline double winding_number(const TriangleMesh& mesh, const Vec3& p) {
+  double angle = 0.0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 a = mesh.vertices[t[0]] - p, b = mesh.vertices[t[1]] - p, c = mesh.vertices[t[2]] - p;
+    const double la = a.norm(), lb = b.norm(), lc = c.norm();
+    angle += 2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
+  }
+  return angle / (4.0 * std::numbers::pi);
 }
 
 /// Vertices and triangles of a plain OBJ file in the source tree, faults and all.

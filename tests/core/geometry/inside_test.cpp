@@ -2,24 +2,10 @@
 
 #include "tests/meshes.h"
 
-#include <Eigen/Geometry>
-
-#include <numbers>
 #include <random>
 
 namespace smelt {
 namespace {
-
-/// The winding number as the sum of solid angles over 4 pi. [Van Oosterom & Strackee 1983]
-double winding_number(const TriangleMesh& mesh, const Vec3& p) {
-  double angle = 0.0;
-  for (const auto& t : mesh.triangles) {
-    const Vec3 a = mesh.vertices[t[0]] - p, b = mesh.vertices[t[1]] - p, c = mesh.vertices[t[2]] - p;
-    const double la = a.norm(), lb = b.norm(), lc = c.norm();
-    angle += 2.0 * std::atan2(a.dot(b.cross(c)), la * lb * lc + a.dot(b) * lc + b.dot(c) * la + c.dot(a) * lb);
-  }
-  return angle / (4.0 * std::numbers::pi);
-}
 
 TEST(Inside, AgreesWithTheWindingNumberOnTheBunny) {
   const TriangleMesh bunny = load_asset("bunny.obj");
