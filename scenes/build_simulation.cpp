@@ -169,6 +169,8 @@ void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetu
                                         [](const MaterialSettings& m) { return m.viscosity.law == "smd"; });
   p.shear_wave_speed = scene.solver.shear_wave_speed.value_or(viscoplastic ? p.sound_speed : 0.0);
   p.artificial_viscosity = scene.solver.artificial_viscosity;
+  p.density_diffusion = scene.solver.density_diffusion;
+  p.hourglass_control = scene.solver.hourglass_control;
   p.xsph = scene.solver.xsph;
   p.courant = scene.time_step.courant;
   p.min_time_step = scene.time_step.min_time_step;
@@ -219,6 +221,7 @@ SimulationSetup build_simulation(const Scene& scene) {
   Box3 scene_bounds = setup.body_bounds;
   for (const ColliderSettings& collider : scene.colliders) {
     setup.responses.push_back({collider.friction, collider.restitution});
+    setup.walls.push_back(collider.wall);
     if (collider.mesh == "ground") {
       scene_bounds.extend(Vec3(setup.body_bounds.centre()[0], collider.ground_height, setup.body_bounds.centre()[2]));
       setup.colliders.emplace_back();
@@ -245,7 +248,11 @@ Colliders<3> build_colliders(const SimulationSetup& setup) {
     std::vector<Simplex<3>> triangles;
     triangles.reserve(mesh.triangles.size());
     for (const auto& t : mesh.triangles) triangles.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
-    colliders.add(std::move(triangles), setup.responses[k]);
+    Obstacle<3> obstacle{std::move(triangles), setup.responses[k]};
+    obstacle.wall = setup.walls[k];
+    // Wound inward it bounds no solid that could be filled: what is in it is outside.
+    obstacle.closed = compute_topology(mesh).closed() && compute_volume(mesh) > 0.0;
+    colliders.add(std::move(obstacle));
   }
   return colliders;
 }

@@ -33,6 +33,8 @@ struct SolverSettings {
   std::optional<double> sound_speed;
   std::optional<double> shear_wave_speed;
   double artificial_viscosity = 0.2;
+  double density_diffusion = 0.0;
+  double hourglass_control = 1.0;
   double xsph = 0.3;
   std::string precision = "single";
 };
@@ -94,6 +96,7 @@ struct ColliderSettings {
   double ground_height = 0.0;
   double friction = 0.0;
   double restitution = 0.0;
+  bool wall = true;
   Vec3 colour{0.35, 0.36, 0.38};
 };
 

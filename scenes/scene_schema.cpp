@@ -89,6 +89,9 @@ void visit_collider(SchemaVisitor& v, ColliderSettings& s) {
   v.number({"ground_y_m", "height of the `ground`"}, s.ground_height, any_number);
   v.number({"friction", "share of the tangential velocity kept after a hit; 0 with restitution 0: no slip"}, s.friction, unit_interval);
   v.number({"restitution", "share of the normal velocity returned after a hit"}, s.restitution, unit_interval);
+  v.boolean({"wall", "completes the density, pressure and shear of the fluid near it (friction 0: no slip, 1: free slip); false: it only "
+                     "stops what hits it"},
+            s.wall);
   v.vector({"colour", "linear RGB in pictures"}, s.colour, unit_interval);
 }
 
@@ -112,6 +115,10 @@ void visit_simulation(SchemaVisitor& v, Scene& s) {
               "the sound speed where a material is `smd`, else 0"},
              s.solver.shear_wave_speed, non_negative);
     v.number({"artificial_viscosity", "alpha, damps sound"}, s.solver.artificial_viscosity, {0.0, 10.0});
+    v.number({"density_diffusion", "delta, smooths pressure noise in fluids with little viscosity; about 0.1"}, s.solver.density_diffusion,
+             {0.0, 1.0});
+    v.number({"hourglass_control", "share of the viscosity that acts on motions of the lattice that no velocity gradient sees; of viscous scenes"},
+             s.solver.hourglass_control, unit_interval);
     v.number({"xsph", "epsilon, how much particles move with their neighbours' velocity"}, s.solver.xsph, unit_interval);
     v.choice({"precision", "of the pair sums; the state is always double"}, s.solver.precision, {"single", "double"});
   });

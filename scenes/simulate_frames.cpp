@@ -85,7 +85,7 @@ std::optional<Checkpoint> find_checkpoint(const OutputFolder& folder, std::uint6
 template <typename Real>
 StepStatistics advance_frame(Solver<3, Real>& solver, double start_time, double interval, ProgressState state, Progress& progress) {
   StepStatistics statistics;
-  solver.prepare();
+  solver.prepare(start_time);
   for (double remaining = interval; remaining > 0.0;) {
     const TimeStep step = solver.step(remaining, start_time + interval - remaining);
     remaining -= step.dt;

@@ -6,7 +6,7 @@
 #define SMELT_PAIR_SUMS_INL_H
 #endif
 
-#include "core/sph/pair_kernels-inl.h"
+#include "core/sph/pair_records-inl.h"
 #include "core/sph/pair_sums.h"
 
 #include <hwy/highway.h>
@@ -16,86 +16,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace smelt {
 namespace HWY_NAMESPACE {
-
-/// Turns four vectors of rows (in blocks of four lanes) into four vectors of columns.
-HWY_INLINE void transpose_blocks(Simd<float> (&rows)[4]) {
-  const Tag<float> d;
-  const hn::Repartition<double, Tag<float>> wide;
-  const auto pairs01_low = hn::BitCast(wide, hn::InterleaveLower(d, rows[0], rows[1]));
-  const auto pairs23_low = hn::BitCast(wide, hn::InterleaveLower(d, rows[2], rows[3]));
-  const auto pairs01_high = hn::BitCast(wide, hn::InterleaveUpper(d, rows[0], rows[1]));
-  const auto pairs23_high = hn::BitCast(wide, hn::InterleaveUpper(d, rows[2], rows[3]));
-  rows[0] = hn::BitCast(d, hn::InterleaveLower(wide, pairs01_low, pairs23_low));
-  rows[1] = hn::BitCast(d, hn::InterleaveUpper(wide, pairs01_low, pairs23_low));
-  rows[2] = hn::BitCast(d, hn::InterleaveLower(wide, pairs01_high, pairs23_high));
-  rows[3] = hn::BitCast(d, hn::InterleaveUpper(wide, pairs01_high, pairs23_high));
-}
-
-/// Loads the first n_fields of the records of one vector of neighbours: fields[f] holds field f of each.
-template <int n_fields, int stride>
-HWY_INLINE void load_records(const float* records, const std::int32_t* index, Simd<float> (&fields)[padded_record(n_fields)]) {
-  static_assert(pair_lanes<float> == 8);
-  const Tag<float> d;
-  const hn::Half<Tag<float>> half;
-  const float* at[8];
-  for (int lane = 0; lane < 8; ++lane) at[lane] = records + static_cast<std::size_t>(index[lane]) * stride;
-  for (int group = 0; group < padded_record(n_fields); group += 4) {
-    Simd<float> rows[4];
-    for (int k = 0; k < 4; ++k)
-      rows[k] = hn::Combine(d, hn::LoadU(half, at[k + 4] + group), hn::LoadU(half, at[k] + group));
-    transpose_blocks(rows);
-    for (int k = 0; k < 4; ++k) fields[group + k] = rows[k];
-  }
-}
-
-/// Double precision serves studies, not speed: plain gathers.
-template <int n_fields, int stride>
-HWY_INLINE void load_records(const double* records, const std::int32_t* index,
-                             Simd<double> (&fields)[padded_record(n_fields)]) {
-  const Tag<double> d;
-  const Tag<std::int64_t> di;
-  const auto indices = hn::PromoteTo(di, hn::LoadU(hn::Rebind<std::int32_t, decltype(di)>(), index));
-  const auto offsets = hn::Mul(indices, hn::Set(di, stride));
-  for (int f = 0; f < n_fields; ++f) fields[f] = hn::GatherIndex(d, records + f, offsets);
-}
-
-/// One scalar field of a vector of neighbours.
-template <typename Real>
-HWY_INLINE Simd<Real> load_scalar(const std::vector<Real>& field, const std::int32_t* index) {
-  alignas(32) Real lanes[pair_lanes<Real>];
-  for (int lane = 0; lane < pair_lanes<Real>; ++lane) lanes[lane] = field[static_cast<std::size_t>(index[lane])];
-  return hn::Load(Tag<Real>(), lanes);
-}
-
-template <typename Real>
-HWY_INLINE Real sum_lanes(Simd<Real> v) {
-  return hn::GetLane(hn::SumOfLanes(Tag<Real>(), v));
-}
-
-/// What every pair needs of its neighbours.
-template <int Dim, typename Real>
-struct Neighbours {
-  Simd<Real> x_ij[Dim], v_ij[Dim], volume, density;
-
-  HWY_INLINE Neighbours(const Real* motion_i, const Real* motion, const std::int32_t* index) {
-    using Fields = PairFields<Dim, Real>;
-    const Tag<Real> d;
-    Simd<Real> fields[Fields::motion_stride];
-    load_records<2 * Dim + 2, Fields::motion_stride>(motion, index, fields);
-    for (int a = 0; a < Dim; ++a) x_ij[a] = hn::Sub(hn::Set(d, motion_i[a]), fields[a]);
-    for (int a = 0; a < Dim; ++a)
-      v_ij[a] = hn::Sub(hn::Set(d, motion_i[Fields::velocity_at + a]), fields[Fields::velocity_at + a]);
-    volume = fields[Fields::volume_at];
-    density = fields[Fields::density_at];
-  }
-};
-
-template <int Dim, typename Real>
-HWY_INLINE Simd<Real> dot(const Simd<Real> (&a)[Dim], const Simd<Real> (&b)[Dim]) {
-  auto sum = hn::Mul(a[0], b[0]);
-  for (int k = 1; k < Dim; ++k) sum = hn::MulAdd(a[k], b[k], sum);
-  return sum;
-}
 
 template <typename PairKernel, int Dim, typename Real, bool with_stress, bool with_heat, bool with_xsph>
 void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, double h, std::size_t begin,
@@ -161,7 +81,7 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   }
 }
 
-template <typename PairKernel, int Dim, typename Real, bool with_stress>
+template <typename PairKernel, int Dim, typename Real, bool with_stress, bool with_hourglass>
 void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const ForceParameters& parameters,
                 std::size_t begin, std::size_t end, std::array<Real, Dim>* acceleration) {
   const Tag<Real> d;
@@ -169,10 +89,11 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
   const PairKernel kernel(h);
   constexpr std::size_t lanes = pair_lanes<Real>;
   using Fields = PairFields<Dim, Real>;
-  constexpr int force_stride = Fields::force_stride(with_stress);
+  constexpr int force_stride = Fields::force_stride(with_stress, with_hourglass);
   const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
   // Pi_ij = -alpha c mu_ij / (0.5 (rho_i + rho_j)), mu_ij = h v_ij.x_ij / (r^2 + 0.01 h^2) where they approach.
   const auto damping = hn::Set(d, static_cast<Real>(2.0 * parameters.artificial_viscosity * parameters.sound_speed * h));
+  [[maybe_unused]] const auto hourglass = hn::Set(d, static_cast<Real>(2 * (Dim + 2)));
   for (std::size_t i = begin; i < end; ++i) {
     Simd<Real> sum[Dim];
     for (auto& s : sum) s = hn::Zero(d);
@@ -186,10 +107,11 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
       const Neighbours<Dim, Real> pair(motion_i, fields.motion.data(), row + k);
       const auto &x_ij = pair.x_ij, &v_ij = pair.v_ij;
       Simd<Real> force[force_stride];
-      load_records<with_stress ? 1 + Dim * Dim : 1, force_stride>(fields.force.data(), row + k, force);
+      load_records<Fields::n_force_fields(with_stress, with_hourglass), force_stride>(fields.force.data(), row + k, force);
       const auto r2 = dot<Dim, Real>(x_ij, x_ij);
       const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(r2));
-      const auto approach = hn::Min(dot<Dim, Real>(v_ij, x_ij), hn::Zero(d));
+      const auto v_x = dot<Dim, Real>(v_ij, x_ij);
+      const auto approach = hn::Min(v_x, hn::Zero(d));
       const auto pi = hn::Div(hn::Mul(damping, approach), hn::Mul(hn::Add(r2, soft), hn::Add(density_i, pair.density)));
       const auto pressure = hn::Add(hn::Set(d, force_i[0]), force[0]);
       // -m_j (pressure + Pi_ij) F, with Pi_ij = -pi and m_j = V_j rho_j.
@@ -205,6 +127,17 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
             traction = hn::MulAdd(hn::Add(hn::Set(d, force_i[component]), force[component]), x_ij[b], traction);
           }
           sum[a] = hn::MulAdd(scale, traction, sum[a]);
+        }
+        if constexpr (with_hourglass) {
+          const auto pair_sum = [&](int field) {
+            return hn::Add(hn::Set(d, force_i[Fields::hourglass_at + field]), force[Fields::hourglass_at + field]);
+          };
+          auto unseen = hn::Mul(pair_sum(0), v_x);
+          for (int b = 0; b < Dim; ++b)
+            for (int a = 0; a <= b; ++a)
+              unseen = hn::NegMulAdd(hn::Mul(pair_sum(1 + (a == b ? a : Dim - 1 + a + b)), x_ij[a]), x_ij[b], unseen);
+          const auto weight = hn::Div(hn::Mul(hn::Mul(scale, hourglass), unseen), hn::Add(r2, soft));
+          for (int a = 0; a < Dim; ++a) sum[a] = hn::MulAdd(weight, x_ij[a], sum[a]);
         }
       }
     }
@@ -301,18 +234,12 @@ template <typename PairKernel, int Dim, typename Real>
 void select_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,
                        const ForceParameters& parameters, std::size_t begin, std::size_t end,
                        std::array<Real, Dim>* acceleration) {
-  terms.stress ? force_sums<PairKernel, Dim, Real, true>(fields, lists, parameters, begin, end, acceleration)
-               : force_sums<PairKernel, Dim, Real, false>(fields, lists, parameters, begin, end, acceleration);
-}
-
-/// Calls run(std::type_identity<the pair kernel of `type`>).
-template <int Dim, typename Real, typename Run>
-void with_kernel(KernelType type, const Run& run) {
-  switch (type) {
-    case KernelType::cubic_spline: return run(std::type_identity<CubicSpline<Dim, Real>>{});
-    case KernelType::quintic_spline: return run(std::type_identity<QuinticSpline<Dim, Real>>{});
-    case KernelType::quadratic: return run(std::type_identity<Quadratic<Dim, Real>>{});
-  }
+  if (terms.hourglass)
+    force_sums<PairKernel, Dim, Real, true, true>(fields, lists, parameters, begin, end, acceleration);
+  else if (terms.stress)
+    force_sums<PairKernel, Dim, Real, true, false>(fields, lists, parameters, begin, end, acceleration);
+  else
+    force_sums<PairKernel, Dim, Real, false, false>(fields, lists, parameters, begin, end, acceleration);
 }
 
 #define SMELT_INSTANTIATE(Dim, Real, suffix)                                                                           \

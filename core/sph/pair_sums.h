@@ -17,6 +17,7 @@ namespace smelt {
 struct PairTerms {
   KernelType kernel = KernelType::cubic_spline;
   bool stress = false;
+  bool hourglass = false;  ///< hourglass control, of a stress
   bool heat = false;
   bool xsph = false;
 };
@@ -32,12 +33,21 @@ struct PairFields {
   /// Position [m], velocity [m/s], volume V [m^Dim], density rho [kg/m^Dim].
   static constexpr int motion_stride = padded_record(2 * Dim + 2);
   static constexpr int velocity_at = Dim, volume_at = 2 * Dim, density_at = 2 * Dim + 1;
-  /// p/rho^2, then S L row-major [Pa] where the scene has a stress, or the sound speed [m/s] of an ideal gas.
-  static constexpr int force_stride(bool with_stress) { return padded_record(with_stress ? 1 + Dim * Dim : 1); }
+  /// p/rho^2, then S L row-major [Pa] where the scene has a stress, or the sound speed [m/s] of an ideal gas. With hourglass control,
+  /// then eta_h/2 [Pa s] and eta_h E/2 [Pa], E the symmetric velocity gradient, packed, its off-diagonal entries doubled.
+  static constexpr int n_force_fields(bool with_stress, bool with_hourglass) {
+    return 1 + (with_stress ? Dim * Dim : 0) + (with_hourglass ? 1 + Dim * (Dim + 1) / 2 : 0);
+  }
+  static constexpr int force_stride(bool with_stress, bool with_hourglass = false) {
+    return padded_record(n_force_fields(with_stress, with_hourglass));
+  }
+  static constexpr int hourglass_at = 1 + Dim * Dim;
+  static constexpr int force_stride(const PairTerms& terms) { return force_stride(terms.stress, terms.hourglass); }
 
   std::vector<Real> motion;       ///< n records of motion_stride
   std::vector<Real> force;        ///< n records of force_stride
   std::vector<Real> temperature;  ///< [K] above a reference
+  std::vector<Real> pressure;     ///< [Pa], for core/sph/pressure_sums.h
 };
 
 /// Sums of the first pass for one particle.
@@ -84,7 +94,11 @@ struct ForceParameters {
 ///   - sum m_j (p_i/rho_i^2 + p_j/rho_j^2 + Pi_ij) grad_w_ij + sum m_j/(rho_i rho_j) (S_i L_i + S_j L_j) grad_w_ij
 /// of [P 4-38, 4-46, 6-14 corrected: Pi_ij already divides by a density], with Pi_ij of [P 6-15]. L is the inverse of the position
 /// moment: with it the force is the adjoint of the corrected gradient, so it does no work on a rigid motion and conserves
-/// linear and angular momentum [Bonet & Lok 1999].
+/// linear and angular momentum [Bonet & Lok 1999]. Hourglass control adds
+///   2 (Dim + 2) sum V_j/rho_i [ (eta_i + eta_j)/2 v_ij.x_ij - x_ij.(eta_i E_i + eta_j E_j)/2 x_ij ] / (r^2 + 0.01 h^2) grad_w_ij,
+/// the pairwise viscosity of [Monaghan & Gingold 1983] on what the gradients do not see of the velocities: nothing where the field
+/// is linear, a fourth derivative where it is smooth, and friction for motions of the lattice that no gradient resists
+/// (docs/decisions/0009-hourglass-control.md, after [Ganzenmueller 2015]).
 template <int Dim, typename Real>
 void compute_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,
                         const ForceParameters& parameters, std::size_t begin, std::size_t end,

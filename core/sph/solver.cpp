@@ -5,6 +5,7 @@
 #include "core/sph/gradient_correction.h"
 #include "core/sph/kernel.h"
 #include "core/sph/stress_update.h"
+#include "core/sph/wall_terms.h"
 
 #include <algorithm>
 #include <cmath>
@@ -58,6 +59,8 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
   terms_.pair.xsph = parameters_.xsph > 0.0;
   for (int a = 0; a < Dim; ++a) terms_.periodic = terms_.periodic || is_periodic(parameters_.period, a);
   terms_.relaxed = terms_.pair.stress && parameters_.shear_wave_speed > 0.0;
+  terms_.pair.hourglass = terms_.pair.stress && parameters_.hourglass_control > 0.0;
+  terms_.diffusion = parameters_.density_diffusion > 0.0 && parameters_.density == DensityForm::continuity;
   CHECK_EQ(particles_.temperature.size(), terms_.pair.heat ? n : 0);
   if (terms_.pair.stress) {
     particles_.stress.resize(n, Symmetric<Dim>::Zero());
@@ -69,19 +72,31 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
     fail("simulation: the adiabatic index must be > 1, is {}", parameters_.equation_of_state.adiabatic_index);
   if (!terms_.gas && parameters_.quadratic_artificial_viscosity != 0.0)
     fail("simulation: quadratic artificial viscosity is for an ideal gas; shocks in liquids are weak");
+  if (terms_.gas && (colliders_.has_walls() || parameters_.density_diffusion > 0.0))
+    fail("simulation: walls and density diffusion are for liquids, not for an ideal gas");
   if (terms_.gas) energy_rate_.resize(n);
   acceleration_.resize(n, Vec<Dim>::Zero());
   force_sums_.resize(n);
   rates_.resize(n);
   if (terms_.pair.xsph) transport_.resize(n);
   if (terms_.pair.xsph) xsph_.resize(n, Vec<Dim>::Zero());
+  if (colliders_.has_walls())
+    walls_.emplace(WallKernel<Dim>(parameters_.smoothing_length, parameters_.kernel), std::pow(parameters_.particle_volume, 1.0 / Dim),
+                   Colliders<Dim>::wall_guard * particle_radius<Dim>(parameters_.particle_volume));
+  if (walls_ || terms_.diffusion) {
+    pressure_sums_.resize(n);
+    pressure_gradient_.resize(n, Vec<Dim>::Zero());
+  }
+  if (terms_.diffusion) diffusion_sums_.resize(n);
 }
 
 // ---------------------------------------------------------------------------------------------------------- the algorithm
 
 template <int Dim, typename Real>
-void Solver<Dim, Real>::prepare() {
+void Solver<Dim, Real>::prepare(double time) {
+  colliders_.place_at(time);
   search_neighbours();
+  if (walls_) walls_->update(colliders_, particles_.position);
   pack_motion(particles_.velocity);
   sum_densities();
   evaluate_rates();
@@ -104,8 +119,10 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
   // Leap-frog: half a kick, a whole drift, half a kick.
   kick(0.5 * dt);
   drift(dt);
+  colliders_.place_at(time + dt);
 
   if (2.0 * travelled_ > parameters_.skin * parameters_.smoothing_length) search_neighbours();
+  if (walls_) walls_->update(colliders_, particles_.position);
 
   // Density, heat and stress change with the velocity that moved the particles.
   pack_motion(terms_.pair.xsph ? transport_ : particles_.velocity);
@@ -142,91 +159,7 @@ void Solver<Dim, Real>::search_neighbours() {
   for (const auto& x : particles_.position) bounds.extend(x);
   origin_ = bounds.centre();
   travelled_ = 0.0;
-}
-
-// ------------------------------------------------------------------------------------------- fields for the pair loops
-
-template <int Dim, typename Real>
-void Solver<Dim, Real>::pack_motion(const std::vector<Vec<Dim>>& velocity) {
-  using Fields = PairFields<Dim, Real>;
-  const std::size_t n = particles_.size();
-  const std::size_t n_records = n + images_.size();
-  fields_.motion.resize(n_records * Fields::motion_stride);
-  if (terms_.pair.heat) fields_.temperature.resize(n_records);
-  const double reference = materials_.front().heat ? materials_.front().heat->cold : 0.0;
-  parallel_for_each(n, [&](std::size_t i) {
-    Real* record = fields_.motion.data() + i * Fields::motion_stride;
-    const Vec<Dim> x = particles_.position[i] - origin_;
-    for (int a = 0; a < Dim; ++a) record[a] = static_cast<Real>(x[a]);
-    for (int a = 0; a < Dim; ++a) record[Fields::velocity_at + a] = static_cast<Real>(velocity[i][a]);
-    record[Fields::volume_at] = static_cast<Real>(mass(i) / particles_.density[i]);
-    record[Fields::density_at] = static_cast<Real>(particles_.density[i]);
-    // Relative to the melting range, where single precision is needed most.
-    if (terms_.pair.heat) fields_.temperature[i] = static_cast<Real>(particles_.temperature[i] - reference);
-  });
-  copy_motion_to_images();
-}
-
-template <int Dim, typename Real>
-void Solver<Dim, Real>::copy_motion_to_images() {
-  using Fields = PairFields<Dim, Real>;
-  const std::size_t n = particles_.size();
-  parallel_for_each(images_.size(), [&](std::size_t k) {
-    const std::size_t source = images_.source[k];
-    Real* record = fields_.motion.data() + (n + k) * Fields::motion_stride;
-    std::copy_n(fields_.motion.data() + source * Fields::motion_stride, Fields::motion_stride, record);
-    // From the state, as its source's: shifting the rounded record would round it twice.
-    const Vec<Dim> x = particles_.position[source] + images_.shift[k] - origin_;
-    for (int a = 0; a < Dim; ++a) record[a] = static_cast<Real>(x[a]);
-    if (terms_.pair.heat) fields_.temperature[n + k] = fields_.temperature[source];
-  });
-}
-
-/// The records of the force pass, from the state after its rates were integrated.
-template <int Dim, typename Real>
-void Solver<Dim, Real>::pack_forces(std::size_t i, const Mat<Dim>& corrected_stress) {
-  using Fields = PairFields<Dim, Real>;
-  Real* motion = fields_.motion.data() + i * Fields::motion_stride;
-  const double rho = particles_.density[i];
-  for (int a = 0; a < Dim; ++a) motion[Fields::velocity_at + a] = static_cast<Real>(particles_.velocity[i][a]);
-  motion[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
-  motion[Fields::density_at] = static_cast<Real>(rho);
-
-  Real* force = fields_.force.data() + i * Fields::force_stride(terms_.pair.stress);
-  const double pressure = compute_pressure(parameters_.equation_of_state, parameters_.sound_speed, material(i).density, rho, 0.0);
-  force[0] = static_cast<Real>(pressure / (rho * rho));
-  if (terms_.pair.stress)
-    for (int a = 0; a < Dim; ++a)
-      for (int b = 0; b < Dim; ++b) force[1 + a * Dim + b] = static_cast<Real>(corrected_stress(a, b));
-}
-
-/// The same for an ideal gas after a step of dt. Its forces depend on energy and velocity, so both are wanted at the step's end: half a
-/// kick ahead, by the rates of the step before. What particles lose as kinetic energy they then gain as heat to second order in dt.
-template <int Dim, typename Real>
-void Solver<Dim, Real>::pack_gas(std::size_t i, double dt) {
-  using Fields = PairFields<Dim, Real>;
-  const double ahead = 0.5 * dt;
-  const Vec<Dim> velocity = particles_.velocity[i] + ahead * acceleration_[i];
-  const double e = particles_.internal_energy[i] + ahead * energy_rate_[i];
-  const double rho = particles_.density[i];
-  Real* motion = fields_.motion.data() + i * Fields::motion_stride;
-  for (int a = 0; a < Dim; ++a) motion[Fields::velocity_at + a] = static_cast<Real>(velocity[a]);
-  motion[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
-  motion[Fields::density_at] = static_cast<Real>(rho);
-  Real* force = fields_.force.data() + i * Fields::force_stride(false);
-  const EquationOfState& state = parameters_.equation_of_state;
-  force[0] = static_cast<Real>(compute_pressure(state, 0.0, 1.0, rho, e) / (rho * rho));
-  force[1] = static_cast<Real>(compute_sound_speed(state, 0.0, 1.0, rho, e));
-}
-
-template <int Dim, typename Real>
-void Solver<Dim, Real>::copy_forces_to_images() {
-  copy_motion_to_images();
-  const std::size_t n = particles_.size();
-  const int stride = PairFields<Dim, Real>::force_stride(terms_.pair.stress);
-  parallel_for_each(images_.size(), [&](std::size_t k) {
-    std::copy_n(fields_.force.data() + images_.source[k] * stride, stride, fields_.force.data() + (n + k) * stride);
-  });
+  if (walls_) walls_->find(colliders_, particles_.position, parameters_.skin * parameters_.smoothing_length);
 }
 
 // ------------------------------------------------------------------------------------------------------ rates and forces
@@ -250,8 +183,10 @@ void Solver<Dim, Real>::set_summed_densities(bool normalise) {
     compute_density_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end, density_sums_.data());
   });
   parallel_for_each(n, [&](std::size_t i) {
-    const DensitySums<Real>& sums = density_sums_[i];
-    const double rho = normalise ? static_cast<double>(sums.mass) / sums.volume : sums.mass;
+    const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr;
+    const double solid = wall ? wall->solid : 0.0;
+    const double mass_sum = density_sums_[i].mass + solid * material(i).density;
+    const double rho = normalise ? mass_sum / (density_sums_[i].volume + solid) : mass_sum;
     particles_.density[i] = rho;
     Real* record = fields_.motion.data() + i * Fields::motion_stride;
     record[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
@@ -262,15 +197,60 @@ void Solver<Dim, Real>::set_summed_densities(bool normalise) {
 
 template <int Dim, typename Real>
 void Solver<Dim, Real>::evaluate_rates() {
+  if (walls_ || terms_.diffusion) evaluate_pressure_gradients();
   parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
     compute_rate_sums<Dim, Real>(fields_, lists_, terms_.pair, parameters_.smoothing_length, begin, end, rates_.data());
   });
+  if (terms_.diffusion) apply_density_diffusion();
+  if (walls_)
+    parallel_for_each(walls_->neighbours().size(), [&](std::size_t k) { apply_wall_rates(walls_->neighbours()[k]); });
+}
+
+/// Everywhere where density diffuses, else near walls only.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::evaluate_pressure_gradients() {
+  const auto evaluate = [&](std::size_t begin, std::size_t end) {
+    compute_pressure_gradient_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end,
+                                              pressure_sums_.data());
+    for (std::size_t i = begin; i < end; ++i)
+      pressure_gradient_[i] = compute_pressure_gradient<Dim, Real>(pressure_sums_[i], walls_ ? walls_->of(i) : nullptr,
+                                                                   particles_.density[i], parameters_.gravity);
+  };
+  if (terms_.diffusion)
+    parallel_blocks(particles_.size(), evaluate);
+  else
+    parallel_for_each(walls_->neighbours().size(), [&](std::size_t k) {
+      const auto i = static_cast<std::size_t>(walls_->neighbours()[k].particle);
+      evaluate(i, i + 1);
+    });
+}
+
+/// drho_i/dt += delta h c sum ..., where p/c^2 stands for the density.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::apply_density_diffusion() {
+  pack_gradients();
+  const double strength = parameters_.density_diffusion * parameters_.smoothing_length / parameters_.sound_speed;
+  parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
+    compute_pressure_diffusion_sums<Dim, Real>(fields_, packed_gradient_, lists_, parameters_.kernel, parameters_.smoothing_length, begin,
+                                               end, diffusion_sums_.data());
+    for (std::size_t i = begin; i < end; ++i) rates_[i].density_rate += static_cast<Real>(strength * diffusion_sums_[i]);
+  });
+}
+
+template <int Dim, typename Real>
+void Solver<Dim, Real>::apply_wall_rates(const WallNeighbour<Dim>& wall) {
+  using Fields = PairFields<Dim, Real>;
+  const auto i = static_cast<std::size_t>(wall.particle);
+  Vec<Dim> velocity;  // the one that the pair sums were made with
+  for (int a = 0; a < Dim; ++a) velocity[a] = fields_.motion[i * Fields::motion_stride + Fields::velocity_at + a];
+  accumulate_wall_rates<Dim, Real>(wall, colliders_, terms_.pair, velocity, particles_.density[i],
+                                   terms_.pair.heat ? particles_.temperature[i] : 0.0, rates_[i]);
 }
 
 /// With dt = 0 nothing advances, but the stress of a law without memory and the XSPH correction follow from the state.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::integrate_rates(double dt) {
-  fields_.force.resize((particles_.size() + images_.size()) * PairFields<Dim, Real>::force_stride(terms_.pair.stress));
+  fields_.force.resize((particles_.size() + images_.size()) * PairFields<Dim, Real>::force_stride(terms_.pair));
   parallel_for_each(particles_.size(), [&](std::size_t i) {
     const RateSums<Dim, Real>& rate = rates_[i];
     const Material& m = material(i);
@@ -295,12 +275,11 @@ Mat<Dim> Solver<Dim, Real>::integrate_stress(std::size_t i, double dt) {
   Symmetric<Dim> moment;
   for (int k = 0; k < n_symmetric<Dim>; ++k) moment[k] = rates_[i].position_moment[k];
   const Mat<Dim> correction = compute_gradient_correction<Dim>(to_matrix<Dim>(moment));
+  Mat<Dim> bare_gradient;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = 0; b < Dim; ++b) bare_gradient(a, b) = rates_[i].velocity_moment[a * Dim + b];
+  const Mat<Dim> gradient = bare_gradient * correction;
   if (!terms_.relaxed || dt > 0.0) {
-    Mat<Dim> bare_gradient;
-    for (int a = 0; a < Dim; ++a)
-      for (int b = 0; b < Dim; ++b) bare_gradient(a, b) = rates_[i].velocity_moment[a * Dim + b];
-    const Mat<Dim> gradient = bare_gradient * correction;
-
     const Material& m = material(i);
     const double u = m.heat ? melted_fraction(*m.heat, particles_.temperature[i]) : 0.0;
     const FlowCurve curve = flow_curve_at(m.rheology, u);
@@ -311,6 +290,7 @@ Mat<Dim> Solver<Dim, Real>::integrate_stress(std::size_t i, double dt) {
     particles_.stress[i] = after.stress;
     particles_.viscosity[i] = static_cast<float>(after.viscosity);
   }
+  if (terms_.pair.hourglass) pack_hourglass(i, gradient);
   return to_matrix<Dim>(particles_.stress[i]) * correction;
 }
 
@@ -326,6 +306,20 @@ void Solver<Dim, Real>::evaluate_forces() {
     for (std::size_t i = begin; i < end; ++i)
       for (int a = 0; a < Dim; ++a) acceleration_[i][a] = force_sums_[i][a] + parameters_.gravity[a];
   });
+  if (walls_)
+    parallel_for_each(walls_->neighbours().size(), [&](std::size_t k) { apply_wall_forces(walls_->neighbours()[k]); });
+}
+
+template <int Dim, typename Real>
+void Solver<Dim, Real>::apply_wall_forces(const WallNeighbour<Dim>& wall) {
+  if (wall.contacts.empty()) return;
+  const auto i = static_cast<std::size_t>(wall.particle);
+  Mat<Dim> corrected_stress = Mat<Dim>::Zero();
+  if (terms_.pair.stress)
+    for (int a = 0; a < Dim; ++a)
+      for (int b = 0; b < Dim; ++b) corrected_stress(a, b) = force_record(i)[1 + a * Dim + b];
+  acceleration_[i] += wall_acceleration<Dim>(wall, colliders_, particles_.density[i], pressure(i), corrected_stress, pressure_gradient_[i],
+                                             parameters_.gravity);
 }
 
 // -------------------------------------------------------------------------------------------------------------- leap-frog
@@ -356,84 +350,7 @@ void Solver<Dim, Real>::drift(double dt) {
         return (particles_.position[i] - before).norm();
       },
       [](double a, double b) { return std::max(a, b); });
-  travelled_ += farthest;
-}
-
-/// Largest sound speed of any particle [m/s].
-template <int Dim, typename Real>
-double Solver<Dim, Real>::fastest_sound() const {
-  const EquationOfState& state = parameters_.equation_of_state;
-  if (state.law == PressureLaw::linear) return parameters_.sound_speed;
-  return deterministic_reduce(
-      particles_.size(), 0.0,
-      [&](std::size_t i) {
-        return compute_sound_speed(state, parameters_.sound_speed, material(i).density, particles_.density[i], internal_energy(i));
-      },
-      [](double a, double b) { return std::max(a, b); });
-}
-
-template <int Dim, typename Real>
-TimeStepInput Solver<Dim, Real>::time_step_input() const {
-  TimeStepInput input;
-  input.smoothing_length = parameters_.smoothing_length;
-  const double c = fastest_sound();
-  const double shear = terms_.relaxed ? parameters_.shear_wave_speed : 0.0;
-  input.wave_speed = std::sqrt(c * c + 4.0 / 3.0 * shear * shear);
-  struct Extremes {
-    double speed2 = 0.0, acceleration2 = 0.0, viscosity = 0.0;
-  };
-  const bool limited_by_viscosity = terms_.pair.stress && !terms_.relaxed;
-  const Extremes extremes = deterministic_reduce(
-      particles_.size(), Extremes{},
-      [&](std::size_t i) {
-        const double nu = limited_by_viscosity ? particles_.viscosity[i] / particles_.density[i] : 0.0;
-        return Extremes{particles_.velocity[i].squaredNorm(), acceleration_[i].squaredNorm(), nu};
-      },
-      [](const Extremes& a, const Extremes& b) {
-        return Extremes{std::max(a.speed2, b.speed2), std::max(a.acceleration2, b.acceleration2),
-                        std::max(a.viscosity, b.viscosity)};
-      });
-  input.max_speed = std::sqrt(extremes.speed2);
-  input.max_acceleration = std::sqrt(extremes.acceleration2);
-  input.max_kinematic_viscosity = extremes.viscosity;
-  for (const Material& m : materials_)
-    if (m.heat) input.max_diffusivity = std::max(input.max_diffusivity, m.heat->diffusivity);
-  return input;
-}
-
-// ------------------------------------------------------------------------------------------------------------- watchfulness
-
-template <int Dim, typename Real>
-void Solver<Dim, Real>::check_state(double time) const {
-  const auto& p = particles_;
-  const Box<Dim>& domain = parameters_.domain;
-  const bool bounded = !domain.empty();
-  const auto broken_term = [&](std::size_t i) -> const char* {
-    const double relative_density = p.density[i] / material(i).density;
-    // A gas has no density at rest; a liquid has no business far from it.
-    if (!(terms_.gas ? relative_density > 0.0 && std::isfinite(relative_density) : relative_density > 0.1 && relative_density < 10.0))
-      return "the density";
-    if (terms_.gas && !(p.internal_energy[i] > 0.0 && std::isfinite(p.internal_energy[i]))) return "the internal energy";
-    if (terms_.pair.heat && !(p.temperature[i] >= 0.0 && std::isfinite(p.temperature[i]))) return "the temperature (heat equation)";
-    if (terms_.pair.stress && !p.stress[i].allFinite()) return "the extra stress (rheology)";
-    if (!acceleration_[i].allFinite()) return "the acceleration (pressure and stress forces)";
-    if (!p.velocity[i].allFinite() || !p.position[i].allFinite()) return "the velocity (leap-frog)";
-    if (bounded && ((p.position[i] - domain.lower).array() < 0.0 || (domain.upper - p.position[i]).array() < 0.0).any())
-      return "the position (it left the domain)";
-    return nullptr;
-  };
-  constexpr std::int32_t none = std::numeric_limits<std::int32_t>::max();
-  const std::int32_t first = deterministic_reduce(
-      p.size(), none, [&](std::size_t i) { return broken_term(i) ? static_cast<std::int32_t>(i) : none; },
-      [](std::int32_t a, std::int32_t b) { return std::min(a, b); });
-  if (first == none) return;
-  const auto i = static_cast<std::size_t>(first);
-  std::string at;
-  for (int a = 0; a < Dim; ++a) at += fmt::format("{}{:.6g}", a ? ", " : "", p.position[i][a]);
-  throw DivergedError(fmt::format(
-      "the simulation diverged at t = {:.6g} s: {} of particle {} at ({}) m went wrong (density {:.6g} kg/m3, speed {:.6g} m/s); a "
-      "higher [solver] sound_speed_m_s or a lower [time_step] courant helps",
-      time, broken_term(i), p.id[i], at, p.density[i], p.velocity[i].norm()));
+  travelled_ += farthest + dt * colliders_.max_speed();
 }
 
 template class Solver<3, float>;

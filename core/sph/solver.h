@@ -7,9 +7,12 @@
 #include "core/sph/pair_sums.h"
 #include "core/sph/particles.h"
 #include "core/sph/periodic.h"
+#include "core/sph/pressure_sums.h"
 #include "core/sph/time_step.h"
+#include "core/sph/walls.h"
 
 #include <limits>
+#include <optional>
 #include <vector>
 
 namespace smelt {
@@ -33,6 +36,8 @@ struct SolverParameters {
   double shear_wave_speed = 0.0;    ///< sqrt(G/rho0) of the relaxed stress [m/s]; 0: stress follows the strain rate at once
   double artificial_viscosity = 0.0;  ///< alpha of [P 6-15]
   double quadratic_artificial_viscosity = 0.0;  ///< beta of [S 4.40], of an ideal gas alone
+  double density_diffusion = 0.0;     ///< delta of [Antuono 2010], on what corrected gradients do not explain; about 0.1
+  double hourglass_control = 0.0;     ///< share of the viscosity that acts on motions no gradient sees, 0 to 1; of scenes with a stress
   double xsph = 0.0;                ///< epsilon of [P 6-16]
   double courant = 0.25;            ///< C of the time step
   double min_time_step = 1e-9;      ///< [s]; a smaller one is an error, not a slower simulation
@@ -49,6 +54,7 @@ struct SolverTerms {
   bool relaxed = false;  ///< the stress is relaxed, with the shear wave speed as its stiffness
   bool periodic = false;  ///< some axis repeats
   bool gas = false;       ///< an ideal gas: particles carry internal energy
+  bool diffusion = false;  ///< density diffusion
 };
 
 /// Advances particles in time by leap-frog (kick-drift-kick). Real (float or double) is what the pair loops compute in; the state is
@@ -74,10 +80,10 @@ class Solver {
   }
 
   /// Sorts, searches and evaluates the forces anew from the state alone. Called at the start of every frame, so that a run resumed
-  /// from a stored state goes on in the same bytes as one that never stopped.
-  void prepare();
+  /// from a stored state goes on in the same bytes as one that never stopped. `time` [s] tells where moving obstacles are.
+  void prepare(double time = 0.0);
 
-  /// One step of at most `remaining` [s]. `time` [s] only serves messages. Throws DivergedError with the particle, the term and
+  /// One step of at most `remaining` [s] from `time` [s]. Throws DivergedError with the particle, the term and
   /// the time when a value is not finite, a density is beyond reason, a particle leaves the domain, or the time step collapses.
   TimeStep step(double remaining, double time);
 
@@ -85,14 +91,22 @@ class Solver {
   void search_neighbours();
   void pack_motion(const std::vector<Vec<Dim>>& velocity);
   void pack_gas(std::size_t i, double dt);
+  void pack_gradients();
   void copy_motion_to_images();
   void copy_forces_to_images();
   void sum_densities();
   void set_summed_densities(bool normalise);
   void evaluate_rates();
+  void evaluate_pressure_gradients();
+  void apply_density_diffusion();
+  void apply_wall_rates(const WallNeighbour<Dim>& wall);
+  void apply_wall_forces(const WallNeighbour<Dim>& wall);
+  Real* force_record(std::size_t i) { return fields_.force.data() + i * PairFields<Dim, Real>::force_stride(terms_.pair); }
+  double pressure(std::size_t i) const;
   void integrate_rates(double dt);
   Mat<Dim> integrate_stress(std::size_t i, double dt);
   void pack_forces(std::size_t i, const Mat<Dim>& corrected_stress);
+  void pack_hourglass(std::size_t i, const Mat<Dim>& velocity_gradient);
   void evaluate_forces();
   void kick(double dt);
   void drift(double dt);
@@ -114,6 +128,11 @@ class Solver {
   Vec<Dim> origin_ = Vec<Dim>::Zero();
   double travelled_ = std::numeric_limits<double>::infinity();  ///< farthest way of any particle since the last search [m]
   std::vector<DensitySums<Real>> density_sums_;  ///< empty where density follows the continuity equation
+  std::optional<Walls<Dim>> walls_;  ///< absent where no obstacle is a wall
+  std::vector<PressureGradientSums<Dim, Real>> pressure_sums_;  ///< like the next two, empty without walls and density diffusion
+  std::vector<Vec<Dim>> pressure_gradient_;                     ///< [Pa/m]
+  std::vector<Real> packed_gradient_;                           ///< the same for the pair loops
+  std::vector<Real> diffusion_sums_;
   std::vector<RateSums<Dim, Real>> rates_;
   std::vector<std::array<Real, Dim>> force_sums_;
   std::vector<Vec<Dim>> acceleration_;

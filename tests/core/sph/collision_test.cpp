@@ -9,7 +9,7 @@ namespace {
 
 Colliders<3> floor_with(const ContactResponse& response) {
   Colliders<3> colliders;
-  colliders.add({{Vec3(-9, 0, -9), Vec3(-9, 0, 9), Vec3(9, 0, 9)}, {Vec3(-9, 0, -9), Vec3(9, 0, 9), Vec3(9, 0, -9)}}, response);
+  colliders.add({{{Vec3(-9, 0, -9), Vec3(-9, 0, 9), Vec3(9, 0, 9)}, {Vec3(-9, 0, -9), Vec3(9, 0, 9), Vec3(9, 0, -9)}}, response});
   return colliders;
 }
 
@@ -56,7 +56,7 @@ Colliders<3> box(const ContactResponse& response) {
       triangles.push_back({corner(-1, -1), corner(1, 1), corner(-1, 1)});
     }
   Colliders<3> colliders;
-  colliders.add(std::move(triangles), response);
+  colliders.add({std::move(triangles), response});
   return colliders;
 }
 

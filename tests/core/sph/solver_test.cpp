@@ -222,7 +222,7 @@ TEST(Solver, ColdBlockStandsOnTheGround) {
   cold.rheology.jump_number.reset();
   cold.rheology.rest_viscosity = ThermalRange{1e7, 1e7};
   Colliders<3> ground;
-  ground.add({{Vec3(-9, 0, -9), Vec3(-9, 0, 9), Vec3(9, 0, 9)}, {Vec3(-9, 0, -9), Vec3(9, 0, 9), Vec3(9, 0, -9)}}, {});
+  ground.add({{{Vec3(-9, 0, -9), Vec3(-9, 0, 9), Vec3(9, 0, 9)}, {Vec3(-9, 0, -9), Vec3(9, 0, 9), Vec3(9, 0, -9)}}});
   Solver<3, float> solver(parameters, {cold}, std::move(ground), p);
   run_until(solver, 1.0);
   const auto& q = solver.particles();
@@ -255,7 +255,7 @@ Particles<3> run_on_threads(int threads, double split) {
   m.heat = HeatProperties{1e-3, 250.0, 350.0};
   const auto ground = [] {
     Colliders<3> colliders;
-    colliders.add({{Vec3(-9, 0, -9), Vec3(-9, 0, 9), Vec3(9, 0, 9)}, {Vec3(-9, 0, -9), Vec3(9, 0, 9), Vec3(9, 0, -9)}}, {0.3, 0.2});
+    colliders.add({{{Vec3(-9, 0, -9), Vec3(-9, 0, 9), Vec3(9, 0, 9)}, {Vec3(-9, 0, -9), Vec3(9, 0, 9), Vec3(9, 0, -9)}}, {0.3, 0.2}});
     return colliders;
   };
   Solver<3, float> first(parameters, {m}, ground(), p);

@@ -1,0 +1,106 @@
+// The pressure passes for one instruction set; included once per target by pressure_sums.cpp.
+#if defined(SMELT_PRESSURE_SUMS_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef SMELT_PRESSURE_SUMS_INL_H
+#undef SMELT_PRESSURE_SUMS_INL_H
+#else
+#define SMELT_PRESSURE_SUMS_INL_H
+#endif
+
+#include "core/sph/pair_records-inl.h"
+#include "core/sph/pressure_sums.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace smelt {
+namespace HWY_NAMESPACE {
+
+template <typename PairKernel, int Dim, typename Real>
+void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, double h, std::size_t begin,
+                            std::size_t end, PressureGradientSums<Dim, Real>* sums) {
+  const Tag<Real> d;
+  const PairKernel kernel(h);
+  constexpr std::size_t lanes = pair_lanes<Real>;
+  constexpr int n_moments = Dim * (Dim + 1) / 2;
+  using Fields = PairFields<Dim, Real>;
+  for (std::size_t i = begin; i < end; ++i) {
+    Simd<Real> gradient[Dim], moment[n_moments];
+    for (auto& g : gradient) g = hn::Zero(d);
+    for (auto& m : moment) m = hn::Zero(d);
+    const std::int32_t* row = lists.index.data() + lists.begin[i];
+    const std::size_t n = lists.padded[i];
+    for (std::size_t k = 0; k < n; k += lanes) {
+      const Neighbours<Dim, Real> pair(fields.motion.data() + i * Fields::motion_stride, fields.motion.data(), row + k);
+      const auto& x_ij = pair.x_ij;
+      const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(dot<Dim, Real>(x_ij, x_ij)));
+      const auto p_ji = hn::Sub(load_scalar(fields.pressure, row + k), hn::Set(d, fields.pressure[i]));
+      for (int b = 0; b < Dim; ++b) {
+        const auto weighted = hn::Mul(volume_f, x_ij[b]);
+        gradient[b] = hn::MulAdd(p_ji, weighted, gradient[b]);
+        for (int a = 0; a <= b; ++a) {
+          auto& m = moment[a == b ? a : Dim - 1 + a + b];
+          m = hn::NegMulAdd(x_ij[a], weighted, m);
+        }
+      }
+    }
+    for (int a = 0; a < Dim; ++a) sums[i].gradient[a] = sum_lanes<Real>(gradient[a]);
+    for (int a = 0; a < n_moments; ++a) sums[i].moment[a] = sum_lanes<Real>(moment[a]);
+  }
+}
+
+template <typename PairKernel, int Dim, typename Real>
+void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vector<Real>& gradients, const NeighbourLists& lists,
+                             double h, std::size_t begin, std::size_t end, Real* sums) {
+  const Tag<Real> d;
+  const PairKernel kernel(h);
+  constexpr std::size_t lanes = pair_lanes<Real>;
+  constexpr int stride = gradient_stride<Dim>;
+  using Fields = PairFields<Dim, Real>;
+  const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
+  const auto half = hn::Set(d, Real(0.5));
+  for (std::size_t i = begin; i < end; ++i) {
+    auto sum = hn::Zero(d);
+    const Real* gradient_i = gradients.data() + i * stride;
+    const std::int32_t* row = lists.index.data() + lists.begin[i];
+    const std::size_t n = lists.padded[i];
+    for (std::size_t k = 0; k < n; k += lanes) {
+      const Neighbours<Dim, Real> pair(fields.motion.data() + i * Fields::motion_stride, fields.motion.data(), row + k);
+      const auto r2 = dot<Dim, Real>(pair.x_ij, pair.x_ij);
+      Simd<Real> gradient_j[padded_record(Dim)];
+      load_records<Dim, stride>(gradients.data(), row + k, gradient_j);
+      Simd<Real> gradient[Dim];
+      for (int a = 0; a < Dim; ++a) gradient[a] = hn::Add(hn::Set(d, gradient_i[a]), gradient_j[a]);
+      const auto p_ji = hn::Sub(load_scalar(fields.pressure, row + k), hn::Set(d, fields.pressure[i]));
+      const auto unexplained = hn::MulAdd(half, dot<Dim, Real>(gradient, pair.x_ij), p_ji);
+      const auto weight = hn::Div(hn::Mul(hn::Mul(pair.volume, kernel.gradient_over_r(r2)), r2), hn::Add(r2, soft));
+      // F is negative: the sign of a Laplacian.
+      sum = hn::NegMulAdd(weight, unexplained, sum);
+    }
+    sums[i] = 2 * sum_lanes<Real>(sum);
+  }
+}
+
+#define SMELT_INSTANTIATE(Dim, Real, suffix)                                                                              \
+  inline void pressure_gradient_sums_##suffix(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,           \
+                                              KernelType type, double h, std::size_t begin, std::size_t end,              \
+                                              PressureGradientSums<Dim, Real>* sums) {                                    \
+    with_kernel<Dim, Real>(type, [&](auto kernel) HWY_ATTR {                                                              \
+      pressure_gradient_sums<typename decltype(kernel)::type, Dim, Real>(fields, lists, h, begin, end, sums);             \
+    });                                                                                                                   \
+  }                                                                                                                       \
+  inline void pressure_diffusion_sums_##suffix(const PairFields<Dim, Real>& fields, const std::vector<Real>& gradients,   \
+                                               const NeighbourLists& lists, KernelType type, double h, std::size_t begin, \
+                                               std::size_t end, Real* sums) {                                             \
+    with_kernel<Dim, Real>(type, [&](auto kernel) HWY_ATTR {                                                              \
+      pressure_diffusion_sums<typename decltype(kernel)::type, Dim, Real>(fields, gradients, lists, h, begin, end, sums); \
+    });                                                                                                                   \
+  }
+SMELT_INSTANTIATE(3, float, 3f)
+SMELT_INSTANTIATE(3, double, 3d)
+SMELT_INSTANTIATE(2, double, 2d)
+SMELT_INSTANTIATE(1, double, 1d)
+#undef SMELT_INSTANTIATE
+
+}  // namespace HWY_NAMESPACE
+}  // namespace smelt
+HWY_AFTER_NAMESPACE();
+
+#endif  // SMELT_PRESSURE_SUMS_INL_H

@@ -1,0 +1,131 @@
+// The records that the pair loops read, made from the particles' state.
+#include "core/parallel.h"
+#include "core/sph/solver.h"
+
+#include <algorithm>
+
+namespace smelt {
+
+template <int Dim, typename Real>
+void Solver<Dim, Real>::pack_motion(const std::vector<Vec<Dim>>& velocity) {
+  using Fields = PairFields<Dim, Real>;
+  const std::size_t n = particles_.size();
+  const std::size_t n_records = n + images_.size();
+  fields_.motion.resize(n_records * Fields::motion_stride);
+  if (terms_.pair.heat) fields_.temperature.resize(n_records);
+  const bool with_pressure = walls_ || terms_.diffusion;
+  if (with_pressure) fields_.pressure.resize(n_records);
+  const double reference = materials_.front().heat ? materials_.front().heat->cold : 0.0;
+  parallel_for_each(n, [&](std::size_t i) {
+    Real* record = fields_.motion.data() + i * Fields::motion_stride;
+    const Vec<Dim> x = particles_.position[i] - origin_;
+    for (int a = 0; a < Dim; ++a) record[a] = static_cast<Real>(x[a]);
+    for (int a = 0; a < Dim; ++a) record[Fields::velocity_at + a] = static_cast<Real>(velocity[i][a]);
+    record[Fields::volume_at] = static_cast<Real>(mass(i) / particles_.density[i]);
+    record[Fields::density_at] = static_cast<Real>(particles_.density[i]);
+    // Relative to the melting range, where single precision is needed most.
+    if (terms_.pair.heat) fields_.temperature[i] = static_cast<Real>(particles_.temperature[i] - reference);
+    if (with_pressure) fields_.pressure[i] = static_cast<Real>(pressure(i));
+  });
+  copy_motion_to_images();
+}
+
+template <int Dim, typename Real>
+void Solver<Dim, Real>::copy_motion_to_images() {
+  using Fields = PairFields<Dim, Real>;
+  const std::size_t n = particles_.size();
+  parallel_for_each(images_.size(), [&](std::size_t k) {
+    const std::size_t source = images_.source[k];
+    Real* record = fields_.motion.data() + (n + k) * Fields::motion_stride;
+    std::copy_n(fields_.motion.data() + source * Fields::motion_stride, Fields::motion_stride, record);
+    // From the state, as its source's: shifting the rounded record would round it twice.
+    const Vec<Dim> x = particles_.position[source] + images_.shift[k] - origin_;
+    for (int a = 0; a < Dim; ++a) record[a] = static_cast<Real>(x[a]);
+    if (terms_.pair.heat) fields_.temperature[n + k] = fields_.temperature[source];
+    if (!fields_.pressure.empty()) fields_.pressure[n + k] = fields_.pressure[source];
+  });
+}
+
+/// Of a liquid [Pa].
+template <int Dim, typename Real>
+double Solver<Dim, Real>::pressure(std::size_t i) const {
+  return compute_pressure(parameters_.equation_of_state, parameters_.sound_speed, material(i).density, particles_.density[i], 0.0);
+}
+
+/// The records of the force pass, from the state after its rates were integrated.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::pack_forces(std::size_t i, const Mat<Dim>& corrected_stress) {
+  using Fields = PairFields<Dim, Real>;
+  Real* motion = fields_.motion.data() + i * Fields::motion_stride;
+  const double rho = particles_.density[i];
+  for (int a = 0; a < Dim; ++a) motion[Fields::velocity_at + a] = static_cast<Real>(particles_.velocity[i][a]);
+  motion[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
+  motion[Fields::density_at] = static_cast<Real>(rho);
+
+  Real* force = force_record(i);
+  force[0] = static_cast<Real>(pressure(i) / (rho * rho));
+  if (terms_.pair.stress)
+    for (int a = 0; a < Dim; ++a)
+      for (int b = 0; b < Dim; ++b) force[1 + a * Dim + b] = static_cast<Real>(corrected_stress(a, b));
+}
+
+/// The same for an ideal gas after a step of dt. Its forces depend on energy and velocity, so both are wanted at the step's end: half a
+/// kick ahead, by the rates of the step before. What particles lose as kinetic energy they then gain as heat to second order in dt.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::pack_gas(std::size_t i, double dt) {
+  using Fields = PairFields<Dim, Real>;
+  const double ahead = 0.5 * dt;
+  const Vec<Dim> velocity = particles_.velocity[i] + ahead * acceleration_[i];
+  const double e = particles_.internal_energy[i] + ahead * energy_rate_[i];
+  const double rho = particles_.density[i];
+  Real* motion = fields_.motion.data() + i * Fields::motion_stride;
+  for (int a = 0; a < Dim; ++a) motion[Fields::velocity_at + a] = static_cast<Real>(velocity[a]);
+  motion[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
+  motion[Fields::density_at] = static_cast<Real>(rho);
+  Real* force = fields_.force.data() + i * Fields::force_stride(false);
+  const EquationOfState& state = parameters_.equation_of_state;
+  force[0] = static_cast<Real>(compute_pressure(state, 0.0, 1.0, rho, e) / (rho * rho));
+  force[1] = static_cast<Real>(compute_sound_speed(state, 0.0, 1.0, rho, e));
+}
+
+/// A solid's viscosity would need tiny steps: with a relaxed stress, that of a shear wave over a smoothing length is enough.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::pack_hourglass(std::size_t i, const Mat<Dim>& velocity_gradient) {
+  double eta = particles_.viscosity[i];
+  if (terms_.relaxed)
+    eta = std::min(eta, 0.25 * particles_.density[i] * parameters_.shear_wave_speed * parameters_.smoothing_length);
+  const double half = 0.5 * parameters_.hourglass_control * eta;
+  Real* record = force_record(i) + PairFields<Dim, Real>::hourglass_at;
+  record[0] = static_cast<Real>(half);
+  const Symmetric<Dim> doubled = to_symmetric<Dim>(velocity_gradient + velocity_gradient.transpose());
+  for (int k = 0; k < n_symmetric<Dim>; ++k) record[1 + k] = static_cast<Real>((k < Dim ? 0.5 : 1.0) * half * doubled[k]);
+}
+
+/// Pressure gradients for the pair loops.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::pack_gradients() {
+  constexpr std::size_t stride = gradient_stride<Dim>;
+  const std::size_t n = particles_.size();
+  packed_gradient_.resize((n + images_.size()) * stride);
+  parallel_for_each(n + images_.size(), [&](std::size_t i) {
+    const Vec<Dim>& gradient = pressure_gradient_[i < n ? i : static_cast<std::size_t>(images_.source[i - n])];
+    for (int a = 0; a < Dim; ++a) packed_gradient_[i * stride + static_cast<std::size_t>(a)] = static_cast<Real>(gradient[a]);
+  });
+}
+
+template <int Dim, typename Real>
+void Solver<Dim, Real>::copy_forces_to_images() {
+  copy_motion_to_images();
+  const std::size_t n = particles_.size();
+  const int stride = PairFields<Dim, Real>::force_stride(terms_.pair);
+  parallel_for_each(images_.size(), [&](std::size_t k) {
+    std::copy_n(fields_.force.data() + images_.source[k] * stride, stride, fields_.force.data() + (n + k) * stride);
+  });
+}
+
+template class Solver<3, float>;
+template class Solver<3, double>;
+template class Solver<2, double>;
+template class Solver<1, double>;
+
+}  // namespace smelt

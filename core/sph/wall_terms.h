@@ -1,0 +1,87 @@
+#pragma once
+// What walls add to the sums over neighbour pairs of one particle (symbols as in core/sph/walls.h, formulation in
+// docs/decisions/0008-walls.md).
+
+#include "core/sph/gradient_correction.h"
+#include "core/sph/pressure_sums.h"
+#include "core/sph/walls.h"
+
+namespace smelt {
+
+/// The part of a velocity (or traction) that a wall holds: all of it across the wall; along it, the share that does not slip
+/// (`friction` of the response, 0: no slip, 1: free slip).
+template <int Dim>
+Vec<Dim> held_by_wall(const Vec<Dim>& vector, const Vec<Dim>& normal, const ContactResponse& response) {
+  const double slip = response.friction;
+  return (1.0 - slip) * vector + slip * vector.dot(normal) * normal;
+}
+
+/// Adds to the rate sums of a particle with velocity `v`, density `rho` and temperature `T`, P standing for held_by_wall:
+///   density_rate     - rho sum push (v - u).n                     (the velocity across is mirrored)
+///   velocity_moment  + sum stretch P (v - u) (x) n                (v_w - v = P (v - u) (n.y)/d in the solid)
+///   position_moment  + int y (x) grad_w dV
+///   heat             - 2 sum (T - T_wall) A/d                     (T_w - T = (T - T_wall) (n.y)/d), where the wall has a temperature.
+template <int Dim, typename Real>
+void accumulate_wall_rates(const WallNeighbour<Dim>& wall, const Colliders<Dim>& colliders, const PairTerms& terms,
+                           const Vec<Dim>& v, double rho, double temperature, RateSums<Dim, Real>& sums) {
+  double density_rate = 0.0, heat = 0.0;
+  Mat<Dim> velocity_moment = Mat<Dim>::Zero();
+  for (const WallContact<Dim>& contact : wall.contacts) {
+    const Obstacle<Dim>& obstacle = colliders.placed()[contact.obstacle].obstacle;
+    const Vec<Dim> relative = v - obstacle.velocity - obstacle.surface_velocity;
+    density_rate -= rho * contact.push * relative.dot(contact.normal);
+    velocity_moment += contact.stretch * held_by_wall<Dim>(relative, contact.normal, obstacle.response) * contact.normal.transpose();
+    if (terms.heat && obstacle.temperature) heat -= 2.0 * (temperature - *obstacle.temperature) * contact.conductance;
+  }
+  sums.density_rate += static_cast<Real>(density_rate);
+  if (terms.heat) sums.heat += static_cast<Real>(heat);
+  if (!terms.stress) return;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = 0; b < Dim; ++b) sums.velocity_moment[a * Dim + b] += static_cast<Real>(velocity_moment(a, b));
+  const Symmetric<Dim> moment = to_symmetric<Dim>(wall.moment);
+  for (int k = 0; k < n_symmetric<Dim>; ++k) sums.position_moment[k] += static_cast<Real>(moment[k]);
+}
+
+/// int (p_w - p) grad_w dV over the solid [Pa/m], where the pressure goes on with the gradient `along` [Pa/m] that it has along the wall
+/// and with rho g across it.
+template <int Dim>
+Vec<Dim> wall_pressure_moment(const WallNeighbour<Dim>& wall, const Vec<Dim>& along, double rho, const Vec<Dim>& gravity) {
+  Vec<Dim> sum = Vec<Dim>::Zero();
+  for (const WallContact<Dim>& contact : wall.contacts) {
+    const Vec<Dim> gradient = along + (rho * gravity - along).dot(contact.normal) * contact.normal;
+    sum += contact.solid * gradient - contact.first.dot(gradient) * contact.normal;
+  }
+  return sum;
+}
+
+/// The corrected pressure gradient [Pa/m], exact for linear fields, that fluid and `wall` (or nullptr) give together. The fluid alone says
+/// how the pressure changes along the wall.
+template <int Dim, typename Real>
+Vec<Dim> compute_pressure_gradient(const PressureGradientSums<Dim, Real>& sums, const WallNeighbour<Dim>* wall, double rho,
+                                   const Vec<Dim>& gravity) {
+  Vec<Dim> gradient;
+  Symmetric<Dim> packed;
+  for (int a = 0; a < Dim; ++a) gradient[a] = sums.gradient[a];
+  for (int k = 0; k < n_symmetric<Dim>; ++k) packed[k] = sums.moment[k];
+  const Mat<Dim> moment = to_matrix<Dim>(packed);
+  const Vec<Dim> of_fluid = compute_gradient_correction<Dim>(moment) * gradient;
+  if (!wall || wall->contacts.empty()) return of_fluid;
+  return compute_gradient_correction<Dim>(moment + wall->moment) * (gradient + wall_pressure_moment<Dim>(*wall, of_fluid, rho, gravity));
+}
+
+/// Acceleration [m/s^2] by pressure p [Pa] and corrected extra stress S L [Pa], P standing for held_by_wall: the adjoints of the rates
+/// above, so that a wall takes just the power that the fluid at it is deformed with, and the pressure's gradient in the solid,
+///   1/rho [ sum push p n - sum stretch P S L n - int (p_w - p) grad_w dV ].
+template <int Dim>
+Vec<Dim> wall_acceleration(const WallNeighbour<Dim>& wall, const Colliders<Dim>& colliders, double rho, double pressure,
+                           const Mat<Dim>& corrected_stress, const Vec<Dim>& pressure_gradient, const Vec<Dim>& gravity) {
+  Vec<Dim> force = -wall_pressure_moment<Dim>(wall, pressure_gradient, rho, gravity);
+  for (const WallContact<Dim>& contact : wall.contacts) {
+    const Vec<Dim>& n = contact.normal;
+    const ContactResponse& response = colliders.placed()[contact.obstacle].obstacle.response;
+    force += contact.push * pressure * n - contact.stretch * held_by_wall<Dim>(corrected_stress * n, n, response);
+  }
+  return force / rho;
+}
+
+}  // namespace smelt

@@ -1,0 +1,135 @@
+#include "core/sph/walls.h"
+
+#include "core/geometry/facet.h"
+#include "core/parallel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace smelt {
+
+namespace {
+
+/// +1 where a particle is in front of an obstacle, -1 behind. A solid's front is outside, whatever the particle sees; a sheet has a
+/// front on the side of the particle: that of the nearest facet, of those equally near the one whose plane is farthest.
+template <int Dim, typename Candidates>
+double side_of(const Obstacle<Dim>& obstacle, const SimplexBvh<Dim>& bvh, const Vec<Dim>& local, const Candidates& candidates) {
+  if (obstacle.closed) return 1.0;
+  double nearest = std::numeric_limits<double>::infinity();
+  double height = 0.0;
+  for (const auto& candidate : candidates) {
+    const Simplex<Dim>& facet = bvh.simplices()[candidate.facet];
+    const double distance = (local - closest_point<Dim>(local, facet)).norm();
+    const double plane = (local - facet[0]).dot(facet_normal<Dim>(facet));
+    constexpr double tie = 1e-9;
+    const bool nearer = distance < (1.0 - tie) * nearest;
+    const bool tied = distance <= (1.0 + tie) * nearest;
+    if (nearer || (tied && std::abs(plane) > std::abs(height))) height = plane;
+    nearest = std::min(nearest, distance);
+  }
+  return height < 0.0 ? -1.0 : 1.0;
+}
+
+}  // namespace
+
+template <int Dim>
+void Walls<Dim>::find(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position, double slack) {
+  struct Found {
+    std::vector<std::int32_t> particles;
+    std::vector<std::size_t> n_candidates;
+    std::vector<Candidate> candidates;
+  };
+  const double reach = kernel_.support_radius() + slack;
+  const std::size_t n_blocks = (position.size() + block_size - 1) / block_size;
+  std::vector<Found> blocks(n_blocks);
+  parallel_blocks(n_blocks, [&](std::size_t b, std::size_t) {
+    Found& block = blocks[b];
+    std::vector<std::uint32_t> facets;
+    for (std::size_t i = b * block_size; i < std::min(position.size(), (b + 1) * block_size); ++i) {
+      const std::size_t before = block.candidates.size();
+      for (std::uint32_t o = 0; o < colliders.placed().size(); ++o) {
+        const auto& placed = colliders.placed()[o];
+        if (!placed.obstacle.wall) continue;
+        facets.clear();
+        placed.bvh.find_near(position[i] - placed.displacement, reach, facets);
+        for (const std::uint32_t facet : facets) block.candidates.push_back({o, facet});
+      }
+      if (block.candidates.size() == before) continue;
+      block.particles.push_back(static_cast<std::int32_t>(i));
+      block.n_candidates.push_back(block.candidates.size() - before);
+    }
+  }, 1);
+
+  slot_.assign(position.size(), -1);
+  neighbours_.clear();
+  begin_.assign(1, 0);
+  candidates_.clear();
+  for (const Found& block : blocks) {
+    candidates_.insert(candidates_.end(), block.candidates.begin(), block.candidates.end());
+    for (std::size_t k = 0; k < block.particles.size(); ++k) {
+      slot_[static_cast<std::size_t>(block.particles[k])] = static_cast<std::int32_t>(neighbours_.size());
+      neighbours_.push_back({block.particles[k], 0.0, Mat<Dim>::Zero(), {}});
+      begin_.push_back(begin_.back() + block.n_candidates[k]);
+    }
+  }
+  contacts_.resize(candidates_.size());
+}
+
+template <int Dim>
+void Walls<Dim>::update(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position) {
+  parallel_for_each(neighbours_.size(),
+                    [&](std::size_t slot) { update_one(colliders, position[static_cast<std::size_t>(neighbours_[slot].particle)], slot); });
+}
+
+template <int Dim>
+void Walls<Dim>::update_one(const Colliders<Dim>& colliders, const Vec<Dim>& position, std::size_t slot) {
+  WallNeighbour<Dim>& seen = neighbours_[slot];
+  seen.solid = 0.0;
+  seen.moment.setZero();
+  WallContact<Dim>* const first = contacts_.data() + begin_[slot];
+  WallContact<Dim>* last = first;
+  const std::span<const Candidate> candidates{candidates_.data() + begin_[slot], begin_[slot + 1] - begin_[slot]};
+  for (std::size_t begin = 0, end = 0; begin < candidates.size(); begin = end) {
+    const std::uint32_t o = candidates[begin].obstacle;
+    while (end < candidates.size() && candidates[end].obstacle == o) ++end;
+    const auto& [obstacle, bvh, displacement] = colliders.placed()[o];
+    const Vec<Dim> local = position - displacement;
+    const double side = side_of<Dim>(obstacle, bvh, local, candidates.subspan(begin, end - begin));
+    for (const Candidate& candidate : candidates.subspan(begin, end - begin)) {
+      const Simplex<Dim>& facet = bvh.simplices()[candidate.facet];
+      const Vec<Dim> normal = side * facet_normal<Dim>(facet);
+      const FacetIntegrals<Dim> integrals = integrate_facet<Dim>(kernel_, facet, normal, local);
+      if (integrals.area == 0.0) continue;
+      seen.solid += integrals.solid;
+      seen.moment += integrals.solid * Mat<Dim>::Identity() - integrals.first * normal.transpose();
+
+      // Facets of one plane are one contact.
+      const double distance = (local - facet[0]).dot(normal);
+      constexpr double same = 1e-9;
+      WallContact<Dim>* contact = std::find_if(first, last, [&](const WallContact<Dim>& c) {
+        return c.obstacle == o && c.normal.dot(normal) > 1.0 - same && std::abs(c.distance - distance) < same * kernel_.support_radius();
+      });
+      if (contact == last) *last++ = {normal, Vec<Dim>::Zero(), distance, 0.0, 0.0, 0.0, 0.0, 0.0, o};
+      contact->first += integrals.first;
+      contact->area += integrals.area;
+      contact->solid += integrals.solid;
+    }
+  }
+  seen.moment = 0.5 * (seen.moment + seen.moment.transpose()).eval();
+  for (WallContact<Dim>* contact = first; contact != last; ++contact) {
+    // A plane seen from behind takes back what a plane in front of it gave: nothing goes on linearly from there.
+    if (contact->distance <= 0.0) continue;
+    const double distance = std::max(contact->distance, least_distance_);
+    contact->stretch = (contact->distance * contact->area + contact->solid) / distance;
+    contact->push = 2.0 * contact->area * std::max(1.0, 0.5 * spacing_ / distance);
+    contact->conductance = contact->area / distance;
+  }
+  seen.contacts = {first, last};
+}
+
+template class Walls<1>;
+template class Walls<2>;
+template class Walls<3>;
+
+}  // namespace smelt

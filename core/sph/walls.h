@@ -1,0 +1,79 @@
+#pragma once
+// Walls: obstacles that complete the fluid's support (docs/decisions/0008-walls.md).
+//
+// The part of a particle's support that lies in a solid is integrated over the solid's facets (core/sph/wall_integrals.h), corners
+// included. In it the velocity goes on linearly through the wall's own, the pressure with the gradient that it has along the wall and
+// that gravity gives it across, the temperature linearly through the wall's own. Symbols: n normal out of the solid, y the way from the
+// particle, d > 0 the distance to a facet's plane, u the wall's velocity, A = int_f W dS, Gamma = int W dV over the solid, dx the spacing.
+
+#include "core/sph/collision.h"
+#include "core/sph/particles.h"
+#include "core/sph/wall_integrals.h"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace smelt {
+
+/// One plane of a wall as a particle sees it.
+template <int Dim>
+struct WallContact {
+  Vec<Dim> normal;          ///< n
+  Vec<Dim> first;           ///< int_f y W dS, y from the particle [-]
+  double distance = 0.0;    ///< d [m]
+  double area = 0.0;        ///< A: int grad_w dV over the solid is the sum of -A n [1/m]
+  double solid = 0.0;       ///< Gamma of the solid behind this plane [-]
+  double push = 0.0;        ///< 2 A max(1, dx/2d): what mirrored pressure and normal velocity come to, and more within dx/2 [1/m]
+  double stretch = 0.0;     ///< (d A + Gamma)/d: int (n.y)/d grad_w dV = stretch n [1/m]
+  double conductance = 0.0;  ///< A/d [1/m^2]
+  std::uint32_t obstacle = 0;
+};
+
+/// A particle near walls.
+template <int Dim>
+struct WallNeighbour {
+  std::int32_t particle = 0;
+  double solid = 0.0;  ///< Gamma, share of the kernel inside solids [-]
+  Mat<Dim> moment;     ///< int y (x) grad_w dV over the solid, symmetric [-]
+  std::span<const WallContact<Dim>> contacts;
+};
+
+/// Which particles are near which facets, and what they see of them.
+template <int Dim>
+class Walls {
+ public:
+  /// `spacing` [m] of the particles at rest. A particle nearer to a plane than `least_distance` [m] counts as that far from it where
+  /// something grows with 1/d; the swept collision keeps centres about as far.
+  Walls(const WallKernel<Dim>& kernel, double spacing, double least_distance)
+      : kernel_(kernel), spacing_(spacing), least_distance_(least_distance) {}
+
+  /// Finds the particles that may come near a facet while none moves farther than `slack` [m].
+  void find(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position, double slack);
+
+  /// What each of them sees from where it is now. Obstacles that are not walls are left out.
+  void update(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position);
+
+  const std::vector<WallNeighbour<Dim>>& neighbours() const { return neighbours_; }
+
+  /// Of particle `i`, or nullptr where it is far from all walls.
+  const WallNeighbour<Dim>* of(std::size_t i) const { return slot_[i] < 0 ? nullptr : &neighbours_[static_cast<std::size_t>(slot_[i])]; }
+
+ private:
+  struct Candidate {
+    std::uint32_t obstacle;
+    std::uint32_t facet;
+  };
+  void update_one(const Colliders<Dim>& colliders, const Vec<Dim>& position, std::size_t slot);
+
+  WallKernel<Dim> kernel_;
+  double spacing_;
+  double least_distance_;
+  std::vector<std::int32_t> slot_;  ///< of each particle among neighbours_, or -1
+  std::vector<WallNeighbour<Dim>> neighbours_;
+  std::vector<std::size_t> begin_;  ///< of each neighbour's candidates, and of its contacts
+  std::vector<Candidate> candidates_;
+  std::vector<WallContact<Dim>> contacts_;
+};
+
+}  // namespace smelt
