@@ -111,7 +111,7 @@ TEST(Extremes, DropsOfOneTwoAndFive) {
     for (std::size_t i = 0; i < p.size(); ++i)
       p.velocity[i] += Vec3(0.0, 0.0, 3.0).cross(p.position[i]) - 1.5 * p.position[i];
     Solver<3, float> solver(all_terms(), {soft_material()}, {}, std::move(p));
-    report_watched(fmt::format("drop of {} particles", n), watch(solver, 0.5), static_cast<std::size_t>(n), energy_bar);
+    report_watched(fmt::format("drop of {}", n), watch(solver, 0.5), static_cast<std::size_t>(n), energy_bar);
   }
 }
 
