@@ -145,6 +145,39 @@ void refuse_bodies_under_ground(const Scene& scene, const std::vector<PlacedBody
   }
 }
 
+/// A particle that begins outside would be moved into what is inside.
+void refuse_bodies_outside_period(const Scene& scene, const Box3& period, const std::vector<PlacedBody>& bodies) {
+  for (std::size_t k = 0; k < bodies.size(); ++k)
+    for (int a = 0; a < 3; ++a) {
+      if (!is_periodic(period, a)) continue;
+      const double outside = std::max(period.lower[a] - bodies[k].bounds.lower[a], bodies[k].bounds.upper[a] - period.upper[a]);
+      if (outside > 1e-6 * bodies[k].bounds.extent()[a])
+        fail("{}: the body reaches {:.4g} m out of the [periodic] box along {}; move it with translate_m, or make the box larger",
+             scene.bodies[k].mesh, outside, "xyz"[a]);
+    }
+}
+
+Box3 to_period(const Scene& scene) {
+  Box3 period;
+  if (!scene.periodic) return period;
+  for (int a = 0; a < 3; ++a) {
+    if (scene.periodic->axes.find("xyz"[a]) == std::string::npos) continue;
+    period.lower[a] = (*scene.periodic->lower)[a];
+    period.upper[a] = (*scene.periodic->upper)[a];
+  }
+  return period;
+}
+
+KernelType to_kernel(const std::string& name) {
+  if (name == "quintic_spline") return KernelType::quintic_spline;
+  return name == "quadratic" ? KernelType::quadratic : KernelType::cubic_spline;
+}
+
+DensityForm to_density_form(const std::string& name) {
+  if (name == "summation") return DensityForm::summation;
+  return name == "normalised_summation" ? DensityForm::normalised_summation : DensityForm::continuity;
+}
+
 double automatic_sound_speed(const Scene& scene, const Box3& scene_bounds) {
   // H: how far anything can fall, over the whole scene along gravity.
   const double g = scene.gravity.norm();
@@ -172,6 +205,11 @@ void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetu
   p.density_diffusion = scene.solver.density_diffusion;
   p.hourglass_control = scene.solver.hourglass_control;
   p.xsph = scene.solver.xsph;
+  p.kernel = to_kernel(scene.solver.kernel);
+  p.equation_of_state.law = scene.solver.equation_of_state == "tait" ? PressureLaw::tait : PressureLaw::linear;
+  p.equation_of_state.background_pressure = scene.solver.background_pressure;
+  p.density = to_density_form(scene.solver.density);
+  p.period = to_period(scene);
   p.courant = scene.time_step.courant;
   p.min_time_step = scene.time_step.min_time_step;
   const Vec3 margin = Vec3::Constant(10.0 * scene_bounds.extent().maxCoeff());
@@ -209,6 +247,7 @@ SimulationSetup build_simulation(const Scene& scene) {
   SimulationSetup setup;
   const std::vector<PlacedBody> bodies = import_bodies(scene, setup.warnings);
   refuse_bodies_under_ground(scene, bodies);
+  refuse_bodies_outside_period(scene, to_period(scene), bodies);
   const std::vector<Seeds> seeds = seed_bodies(scene, bodies);
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     append_body(scene, k, bodies[k], seeds[k], setup.particles);

@@ -36,6 +36,10 @@ struct SolverSettings {
   double density_diffusion = 0.0;
   double hourglass_control = 1.0;
   double xsph = 0.3;
+  std::string kernel = "cubic_spline";
+  std::string equation_of_state = "linear";
+  double background_pressure = 0.0;
+  std::string density = "continuity";
   std::string precision = "single";
 };
 
@@ -45,6 +49,13 @@ struct TimeStepSettings {
 };
 
 struct DomainSettings {
+  std::optional<Vec3> lower;
+  std::optional<Vec3> upper;
+};
+
+/// A box that repeats; both corners are required.
+struct PeriodicSettings {
+  std::string axes = "x";
   std::optional<Vec3> lower;
   std::optional<Vec3> upper;
 };
@@ -148,6 +159,7 @@ struct Scene {
   SolverSettings solver;
   TimeStepSettings time_step;
   DomainSettings domain;
+  std::optional<PeriodicSettings> periodic;
   std::vector<MaterialSettings> materials;
   std::vector<BodySettings> bodies;
   std::vector<ColliderSettings> colliders;

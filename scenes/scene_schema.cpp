@@ -106,7 +106,7 @@ void visit_simulation(SchemaVisitor& v, Scene& s) {
   });
   v.table({"gravity", "a uniform force"}, nullptr, [&] { v.vector({"acceleration_m_s2", "gravity"}, s.gravity, any_number); });
   v.table({"solver", "numerical settings; the defaults suit most shots"}, nullptr, [&] {
-    v.number({"sound_speed_m_s", "c of the equation of state p = c^2 (rho - rho0); the density errs by about gH/c^2",
+    v.number({"sound_speed_m_s", "c of the equation of state; the density errs by about gH/c^2",
               "10 sqrt(2 g H), H the height of the scene, plus ten times the fastest start"},
              s.solver.sound_speed, positive);
     v.number({"shear_wave_speed_m_s",
@@ -120,6 +120,16 @@ void visit_simulation(SchemaVisitor& v, Scene& s) {
     v.number({"hourglass_control", "share of the viscosity that acts on motions of the lattice that no velocity gradient sees; of viscous scenes"},
              s.solver.hourglass_control, unit_interval);
     v.number({"xsph", "epsilon, how much particles move with their neighbours' velocity"}, s.solver.xsph, unit_interval);
+    v.choice({"kernel", "W: `quintic_spline` reaches 3 h instead of 2 h, smoother and with three times the neighbours; `quadratic` keeps "
+                        "particles from clumping"},
+             s.solver.kernel, {"cubic_spline", "quintic_spline", "quadratic"});
+    v.choice({"equation_of_state", "`linear`: p = c^2 (rho - rho0); `tait`: p = c^2 rho0/7 ((rho/rho0)^7 - 1), stiffer as it is compressed"},
+             s.solver.equation_of_state, {"linear", "tait"});
+    v.number({"background_pressure_Pa", "added to p: spaces particles evenly where there is no free surface, and blows a free surface apart"},
+             s.solver.background_pressure, non_negative);
+    v.choice({"density", "`continuity`: integrated in time, right at free surfaces; `summation`: sum of m W, which never drifts but sees "
+                         "a free surface as thin; `normalised_summation`: that over sum of V W, which sees it as less thin"},
+             s.solver.density, {"continuity", "summation", "normalised_summation"});
     v.choice({"precision", "of the pair sums; the state is always double"}, s.solver.precision, {"single", "double"});
   });
   v.table({"time_step", "the adaptive time step"}, nullptr, [&] {
@@ -130,6 +140,16 @@ void visit_simulation(SchemaVisitor& v, Scene& s) {
     v.vector({"lower_m", "lowest corner", "ten times the scene's size below it"}, s.domain.lower, any_number);
     v.vector({"upper_m", "highest corner", "ten times the scene's size above it"}, s.domain.upper, any_number);
   });
+  bool is_periodic = s.periodic.has_value();
+  PeriodicSettings periodic = s.periodic.value_or(PeriodicSettings{});
+  v.table({"periodic", "a box that repeats: what leaves through a face comes in through the opposite one. Bodies start inside; obstacles and "
+                       "surfaces do not repeat"},
+          &is_periodic, [&] {
+            v.choice({"axes", "along which it repeats"}, periodic.axes, {"x", "y", "z", "xy", "xz", "yz", "xyz"});
+            v.vector({"lower_m", "lowest corner; along other axes it does not matter", "required"}, periodic.lower, any_number);
+            v.vector({"upper_m", "highest corner", "required"}, periodic.upper, any_number);
+          });
+  if (is_periodic) s.periodic = periodic;
   visit_tables<MaterialSettings>(v, {"material", "what bodies are made of; at least one"}, s.materials,
                                  [&](MaterialSettings& m) { visit_material(v, m); });
   visit_tables<BodySettings>(v, {"body", "what flows; at least one"}, s.bodies, [&](BodySettings& b) { visit_body(v, b); });

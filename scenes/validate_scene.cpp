@@ -113,6 +113,15 @@ void validate_bodies(const Scene& scene, SceneErrors& errors) {
   }
 }
 
+void validate_periodic(const PeriodicSettings& s, SceneErrors& errors) {
+  if (!s.lower) errors.add("periodic.lower_m", "missing: lowest corner of the box that repeats");
+  if (!s.upper) errors.add("periodic.upper_m", "missing: highest corner of the box that repeats");
+  if (!s.lower || !s.upper) return;
+  for (int a = 0; a < 3; ++a)
+    if (s.axes.find("xyz"[a]) != std::string::npos && !((*s.upper)[a] > (*s.lower)[a]))
+      errors.add("periodic.upper_m", fmt::format("must be above lower_m along {}, is {} and {}", "xyz"[a], (*s.upper)[a], (*s.lower)[a]));
+}
+
 }  // namespace
 
 void validate_scene(const Scene& scene, SceneErrors& errors) {
@@ -144,6 +153,7 @@ void validate_scene(const Scene& scene, SceneErrors& errors) {
   }
   if (scene.domain.lower && scene.domain.upper && !((*scene.domain.upper - *scene.domain.lower).array() > 0.0).all())
     errors.add("domain.upper_m", "must be above lower_m along every axis");
+  if (scene.periodic) validate_periodic(*scene.periodic, errors);
   if (scene.look.cold_K && scene.look.hot_K && !(*scene.look.hot_K > *scene.look.cold_K))
     errors.add("look.hot_K", fmt::format("must be above cold_K = {}, is {}", *scene.look.cold_K, *scene.look.hot_K));
 }

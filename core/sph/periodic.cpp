@@ -25,14 +25,17 @@ void wrap_positions(const Box<Dim>& period, std::span<Vec<Dim>> position) {
 }
 
 template <int Dim>
-PeriodicImages<Dim> make_periodic_images(const Box<Dim>& period, double reach, std::span<const Vec<Dim>> position) {
+void check_period(const Box<Dim>& period, double reach) {
   for (int a = 0; a < Dim; ++a)
     if (is_periodic(period, a) && !(period.upper[a] - period.lower[a] >= 2.0 * reach))
       fail(
-          "simulation: the periodic box is {} m long along axis {}; it must be at least {} m, twice the reach of a "
+          "simulation: the periodic box is {:.6g} m long along {}; it must be at least {:.6g} m, twice the reach of a "
           "particle",
-          period.upper[a] - period.lower[a], a, 2.0 * reach);
+          period.upper[a] - period.lower[a], "xyz"[a], 2.0 * reach);
+}
 
+template <int Dim>
+PeriodicImages<Dim> make_periodic_images(const Box<Dim>& period, double reach, std::span<const Vec<Dim>> position) {
   PeriodicImages<Dim> images;
   for (std::size_t i = 0; i < position.size(); ++i) {
     // Each axis doubles, at most, what the axes before it made: an edge has images of images, a corner theirs.
@@ -103,6 +106,7 @@ PeriodicImages<Dim> build_periodic_neighbour_lists(const Box<Dim>& period, std::
 }
 
 #define SMELT_INSTANTIATE(Dim)                                                                                \
+  template void check_period<Dim>(const Box<Dim>&, double);                                                   \
   template void wrap_positions<Dim>(const Box<Dim>&, std::span<Vec<Dim>>);                                    \
   template PeriodicImages<Dim> make_periodic_images<Dim>(const Box<Dim>&, double, std::span<const Vec<Dim>>); \
   template PeriodicImages<Dim> build_periodic_neighbour_lists<Dim>(                                           \

@@ -32,8 +32,13 @@ struct PeriodicImages {
 template <int Dim>
 void wrap_positions(const Box<Dim>& period, std::span<Vec<Dim>> position);
 
-/// The images within `reach` [m] of the box, in the order of their sources. Throws Error where the period is shorter
-/// than twice the reach: a particle would see the same neighbour twice. `position` must be wrapped.
+/// Throws Error where the box is shorter than twice `reach` [m] along a periodic axis: a particle would see a neighbour
+/// twice.
+template <int Dim>
+void check_period(const Box<Dim>& period, double reach);
+
+/// The images within `reach` [m] of the box, in the order of their sources. `period` has passed check_period with this
+/// reach, and `position` is wrapped.
 template <int Dim>
 PeriodicImages<Dim> make_periodic_images(const Box<Dim>& period, double reach, std::span<const Vec<Dim>> position);
 

@@ -58,6 +58,7 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
   }
   terms_.pair.xsph = parameters_.xsph > 0.0;
   for (int a = 0; a < Dim; ++a) terms_.periodic = terms_.periodic || is_periodic(parameters_.period, a);
+  check_period<Dim>(parameters_.period, list_reach());
   terms_.relaxed = terms_.pair.stress && parameters_.shear_wave_speed > 0.0;
   terms_.pair.hourglass = terms_.pair.stress && parameters_.hourglass_control > 0.0;
   terms_.diffusion = parameters_.density_diffusion > 0.0 && parameters_.density == DensityForm::continuity;
@@ -140,7 +141,7 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
 
 template <int Dim, typename Real>
 void Solver<Dim, Real>::search_neighbours() {
-  const double radius = (kernel_kappa(parameters_.kernel) + parameters_.skin) * parameters_.smoothing_length;
+  const double radius = list_reach();
   if (terms_.periodic) wrap_positions<Dim>(parameters_.period, particles_.position);
   const auto order = compute_cell_order<Dim>(particles_.position, particles_.id, radius);
   for_each_array(particles_, [&](auto& values) { reorder(values, order); });

@@ -62,8 +62,8 @@ struct SolverTerms {
 template <int Dim, typename Real>
 class Solver {
  public:
-  /// Throws Error where the parameters cannot be (non-positive lengths or densities, a viscous or heat-conducting ideal gas). The
-  /// particles of an ideal gas bring their internal energy.
+  /// Throws Error where the parameters cannot be (non-positive lengths or densities, a periodic box too short, a viscous
+  /// or heat-conducting ideal gas). The particles of an ideal gas bring their internal energy.
   Solver(const SolverParameters<Dim>& parameters, std::vector<Material> materials, Colliders<Dim> colliders,
          Particles<Dim> particles);
 
@@ -88,6 +88,8 @@ class Solver {
   TimeStep step(double remaining, double time);
 
  private:
+  /// Of the neighbour lists [m].
+  double list_reach() const { return (kernel_kappa(parameters_.kernel) + parameters_.skin) * parameters_.smoothing_length; }
   void search_neighbours();
   void pack_motion(const std::vector<Vec<Dim>>& velocity);
   void pack_gas(std::size_t i, double dt);

@@ -77,6 +77,32 @@ TEST(BuildSimulation, BrokenMeshesAreMendedWithAWarningOrRefused) {
   }
 }
 
+TEST(BuildSimulation, SolverChoicesReachTheSolver) {
+  const SimulationSetup plain = build_simulation(bunny_scene({"particles.count=500"}));
+  EXPECT_EQ(plain.parameters.kernel, KernelType::cubic_spline);
+  EXPECT_EQ(plain.parameters.density, DensityForm::continuity);
+  EXPECT_TRUE(plain.parameters.period.empty());
+  const SimulationSetup chosen = build_simulation(bunny_scene(
+      {"particles.count=500", "solver.kernel=quintic_spline", "solver.equation_of_state=tait", "solver.background_pressure_Pa=7.5",
+       "solver.density=normalised_summation", "periodic={axes=\"xz\", lower_m=[-2, 9, -3], upper_m=[2, 9, 3]}"}));
+  EXPECT_EQ(chosen.parameters.kernel, KernelType::quintic_spline);
+  EXPECT_EQ(chosen.parameters.equation_of_state.law, PressureLaw::tait);
+  EXPECT_EQ(chosen.parameters.equation_of_state.background_pressure, 7.5);
+  EXPECT_EQ(chosen.parameters.density, DensityForm::normalised_summation);
+  EXPECT_TRUE(is_periodic(chosen.parameters.period, 0));
+  EXPECT_FALSE(is_periodic(chosen.parameters.period, 1));
+  EXPECT_EQ(chosen.parameters.period.upper[2], 3.0);
+}
+
+TEST(BuildSimulation, RefusesABodyAcrossAPeriodicFace) {
+  try {
+    build_simulation(bunny_scene({"particles.count=500", "periodic={axes=\"x\", lower_m=[0, 0, 0], upper_m=[2, 0, 0]}"}));
+    FAIL() << "it was accepted";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("m out of the [periodic] box along x"), std::string::npos) << error.what();
+  }
+}
+
 TEST(BuildSimulation, NewtonianScenesNeedNoRelaxedStress) {
   const SimulationSetup setup = build_simulation(
       bunny_scene({"particles.count=500", "material.0.viscosity={law=\"newtonian\", viscosity_Pa_s={cold=10.0,hot=1.0}}"}));

@@ -106,6 +106,26 @@ TEST(SceneReader, ContradictionsAndNames) {
   expect_error(replaced(good_scene, "heat = {", "# heat = {"), "temperature_K", "has no heat");
 }
 
+TEST(SceneReader, PeriodicBox) {
+  const std::string box = std::string(good_scene) + "[periodic]\n";
+  expect_error(box, "periodic.lower_m: missing", "periodic.upper_m: missing");
+  expect_error(box + "lower_m = [0, 0, 0]\nupper_m = [1, 1, 0]\naxes = \"xz\"\n", ":24: periodic.upper_m", "must be above lower_m along z, is 0 and 0");
+  expect_error(box + "axes = \"zx\"\n", ":23: periodic.axes", "\"zx\" is none of x, y, z, xy, xz, yz, xyz");
+  const Scene scene = read_scene(write_scene_file(box + "lower_m = [0, 0, 0]\nupper_m = [1, 1, 0]\naxes = \"xy\"\n"));
+  EXPECT_EQ(scene.periodic->axes, "xy");
+  EXPECT_FALSE(read_scene(write_scene_file(good_scene)).periodic.has_value());
+  const std::string text = write_scene(scene);
+  EXPECT_EQ(write_scene(read_scene(write_scene_file(text))), text);
+}
+
+TEST(SceneReader, SolverChoices) {
+  const std::string solver = std::string(good_scene) + "[solver]\n";
+  expect_error(solver + "kernel = \"gaussian\"\n", ":23: solver.kernel", "is none of cubic_spline, quintic_spline, quadratic");
+  expect_error(solver + "equation_of_state = \"ideal_gas\"\n", "solver.equation_of_state", "is none of linear, tait");
+  expect_error(solver + "density = \"sum\"\n", "solver.density", "is none of continuity, summation, normalised_summation");
+  expect_error(solver + "background_pressure_Pa = -1\n", "solver.background_pressure_Pa", "of at least 0, is -1");
+}
+
 TEST(SceneReader, ReportsAllErrorsAtOnceInTheOrderOfTheFile) {
   std::string bad = replaced(good_scene, "frames = 10", "frames = -1\ncolour = 3");
   bad = replaced(bad, "material = \"wax\"", "material = \"lava\"");
