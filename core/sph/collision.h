@@ -18,7 +18,7 @@ struct ContactResponse {
 template <int Dim>
 struct Obstacle {
   std::vector<Simplex<Dim>> facets;  ///< where it is at the start [m]
-  ContactResponse response;
+  ContactResponse response = {};
   bool wall = false;
   /// The facets bound a solid, wound outward; otherwise they are a sheet, and what lies behind it is solid to either side.
   bool closed = false;
