@@ -24,7 +24,6 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   const PairKernel kernel(h);
   constexpr std::size_t lanes = pair_lanes<Real>;
   using Fields = PairFields<Dim, Real>;
-  const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
   for (std::size_t i = begin; i < end; ++i) {
     auto density_rate = hn::Zero(d);
     auto heat = hn::Zero(d);
@@ -60,7 +59,7 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
       }
       if constexpr (with_heat) {
         const auto t_ij = hn::Sub(hn::Set(d, fields.temperature[i]), load_scalar(fields.temperature, row + k));
-        heat = hn::MulAdd(hn::Mul(volume_f, t_ij), hn::Div(r2, hn::Add(r2, soft)), heat);
+        heat = hn::MulAdd(volume_f, t_ij, heat);
       }
       if constexpr (with_xsph) {
         const auto mass = hn::Mul(pair.volume, pair.density);

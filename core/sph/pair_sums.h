@@ -56,7 +56,7 @@ struct RateSums {
   Real density_rate;                            ///< sum m_j v_ij . grad_w_ij  [P 4-37]
   std::array<Real, Dim * Dim> velocity_moment;  ///< sum V_j (v_j - v_i) (x) grad_w_ij, row-major (bare velocity gradient)
   std::array<Real, Dim*(Dim + 1) / 2> position_moment;  ///< sum V_j (x_j - x_i) (x) grad_w_ij  [Bonet & Lok 1999]
-  Real heat;                                    ///< 2 sum V_j (T_i - T_j) x_ij.grad_w_ij / (r^2 + 0.01 h^2)  [P 6-9, corrected]
+  Real heat;                                    ///< 2 sum V_j (T_i - T_j) x_ij.grad_w_ij / r^2, finite at r = 0  [P 6-9, corrected]
   std::array<Real, Dim> xsph;                   ///< sum 2 m_j/(rho_i + rho_j) (v_j - v_i) W_ij  [P 6-16]
 };
 
