@@ -71,6 +71,7 @@ void print_check(const SceneOptions& o) {
       "time        {:.0f} s for the simulation, at this machine's pace now\n",
       scene.shot.name, scene.shot.frames, scene.shot.fps, f.n_particles, f.spacing, f.body_volume, f.sound_speed, f.time_step,
       f.time_step_term, f.n_steps, f.bytes / 1e6, f.simulate_seconds);
+  for (const std::string& advice : f.advice) fmt::print("advice      {}\n", advice);
 }
 
 /// The option table.

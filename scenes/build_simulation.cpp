@@ -178,17 +178,21 @@ DensityForm to_density_form(const std::string& name) {
   return name == "normalised_summation" ? DensityForm::normalised_summation : DensityForm::continuity;
 }
 
-double automatic_sound_speed(const Scene& scene, const Box3& scene_bounds) {
+/// v_e = sqrt(2 g H) and the fastest start.
+double compute_expected_speed(const Scene& scene, const Box3& scene_bounds) {
   // H: how far anything can fall, over the whole scene along gravity.
   const double g = scene.gravity.norm();
   const double height = g > 0.0 ? scene_bounds.extent().dot(scene.gravity.cwiseAbs()) / g : 0.0;
   double start = 0.0;
   for (const BodySettings& body : scene.bodies) start = std::max(start, body.velocity.norm());
-  const double expected = std::sqrt(2.0 * g * height) + start;
-  if (!(expected > 0.0))
+  return std::sqrt(2.0 * g * height) + start;
+}
+
+double automatic_sound_speed(double expected_speed) {
+  if (!(expected_speed > 0.0))
     fail("[solver] sound_speed_m_s: nothing moves at the start and there is no gravity, so it does not follow from the scene; give it, "
          "about ten times the fastest speed expected");
-  return 10.0 * expected;
+  return 10.0 * expected_speed;
 }
 
 void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetup& setup) {
@@ -197,7 +201,8 @@ void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetu
   setup.spacing = std::cbrt(p.particle_volume);
   p.smoothing_length = scene.particles.smoothing_length_over_spacing * setup.spacing;
   p.gravity = scene.gravity;
-  p.sound_speed = scene.solver.sound_speed ? *scene.solver.sound_speed : automatic_sound_speed(scene, scene_bounds);
+  setup.expected_speed = compute_expected_speed(scene, scene_bounds);
+  p.sound_speed = scene.solver.sound_speed ? *scene.solver.sound_speed : automatic_sound_speed(setup.expected_speed);
   const bool viscoplastic = std::any_of(scene.materials.begin(), scene.materials.end(),
                                         [](const MaterialSettings& m) { return m.viscosity.law == "smd"; });
   p.shear_wave_speed = scene.solver.shear_wave_speed.value_or(viscoplastic ? p.sound_speed : 0.0);

@@ -1,6 +1,7 @@
 #include "scenes/check_scene.h"
 
 #include "core/error.h"
+#include "scenes/advise.h"
 #include "scenes/build_simulation.h"
 
 #include <chrono>
@@ -12,7 +13,9 @@ namespace {
 
 template <typename Real>
 void take_trial_steps(const Scene& scene, SimulationSetup& setup, int n_trial_steps, SceneForecast& forecast) {
-  Solver<3, Real> solver(setup.parameters, setup.materials, build_colliders(setup), std::move(setup.particles));
+  SolverParameters<3> parameters = setup.parameters;
+  parameters.min_time_step = 0.0;  // a floor too high is something to advise on, not to stop at
+  Solver<3, Real> solver(parameters, setup.materials, build_colliders(setup), std::move(setup.particles));
   solver.prepare();
   double remaining = 1.0 / scene.shot.fps;
   const auto start = std::chrono::steady_clock::now();
@@ -56,6 +59,7 @@ SceneForecast forecast_scene(const Scene& scene, int n_trial_steps) {
     take_trial_steps<double>(scene, setup, n_trial_steps, forecast);
   else
     take_trial_steps<float>(scene, setup, n_trial_steps, forecast);
+  forecast.advice = advise(setup, forecast.time_step);
   return forecast;
 }
 

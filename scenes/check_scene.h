@@ -19,6 +19,7 @@ struct SceneForecast {
   double simulate_seconds = 0.0;  ///< from the pace of a few steps on this machine, as it is now
   double bytes = 0.0;             ///< memory of the particles, their neighbour lists and passes
   std::vector<std::string> warnings;
+  std::vector<std::string> advice;  ///< settings badly chosen, and what to choose
 };
 
 /// Builds the simulation and takes `n_trial_steps` steps of it.
