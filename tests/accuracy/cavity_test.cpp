@@ -21,8 +21,8 @@ namespace {
 /// The box at rest. Its facets run clockwise, so that they face the fluid.
 Solver<2, double> make_cavity(int across) {
   const double spacing = 1.0 / across;
-  // Viscous pressures are some ten times the lid's dynamic pressure, and peak in its corners: the sound speed follows
-  // from them, and costs nothing, as viscosity limits the step.
+  // At ten times the lid's speed the viscous pressures of Re = 1 would squeeze the fluid by a fifth; a higher sound
+  // speed costs nothing, as viscosity limits the step.
   auto parameters = make_parameters<2>(spacing, 50.0);
   parameters.smoothing_length = 1.4 * spacing;
   parameters.courant = 0.4;
@@ -84,8 +84,8 @@ void report(const Measured& measured, double time, int across, std::optional<dou
               .bar = bar});
 }
 
-// The exact flow is steady to 1e-6 after 0.3 L/U. Later the particles part into strings along the lid and holes below
-// it, for which there is a row and no bar.
+// By 0.3 L/U the flow is steady: its slowest mode decays as exp(-52 t). Later the particles gather in strings near the
+// lid's far corner and thin out below its near one, for which there is a row and no bar.
 TEST(Cavity, FollowsTheSlidingLid) {
   constexpr int across = 40;
   const Reference reference = read_reference("cavity_re1_centrelines");
