@@ -73,7 +73,7 @@ Measured measure(const Particles<2>& p, const Reference& reference, int across) 
   return {compute_norms(differences).l2 / compute_norms(exact).l2, plug};
 }
 
-/// From rest: steady after 4 s. By 8 s the walls' neighbours have slid past each other ten times over; what that
+/// From rest: steady after 4 s. By 8 s the rows at the walls have slid eight spacings past each other; what that
 /// disorder costs has a row and no bar.
 void report_channel(int jump) {
   constexpr int across = 40;
