@@ -54,6 +54,7 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
   constexpr std::size_t lanes = pair_lanes<Real>;
   constexpr int stride = gradient_stride<Dim>;
   using Fields = PairFields<Dim, Real>;
+  const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
   const auto half = hn::Set(d, Real(0.5));
   for (std::size_t i = begin; i < end; ++i) {
     auto sum = hn::Zero(d);
@@ -69,7 +70,7 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
       for (int a = 0; a < Dim; ++a) gradient[a] = hn::Add(hn::Set(d, gradient_i[a]), gradient_j[a]);
       const auto p_ji = hn::Sub(load_scalar(fields.pressure, row + k), hn::Set(d, fields.pressure[i]));
       const auto unexplained = hn::MulAdd(half, dot<Dim, Real>(gradient, pair.x_ij), p_ji);
-      const auto weight = hn::Mul(pair.volume, kernel.gradient_over_r(r2));
+      const auto weight = hn::Div(hn::Mul(hn::Mul(pair.volume, kernel.gradient_over_r(r2)), r2), hn::Add(r2, soft));
       // F is negative: the sign of a Laplacian.
       sum = hn::NegMulAdd(weight, unexplained, sum);
     }

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 /// A fresh folder.
 fs::path make_folder(const std::string& name) {
-  const fs::path folder = fs::path(testing::TempDir()) / ("smelt_atomic_" + name);
+  const fs::path folder = fs::path(testing::TempDir()) / ("smelt_atomic_" + std::to_string(::getpid()) + name);
   fs::remove_all(folder);
   fs::create_directories(folder);
   return folder;

@@ -12,7 +12,7 @@ namespace smelt {
 namespace {
 
 std::filesystem::path temporary(const std::string& name) {
-  return std::filesystem::path(testing::TempDir()) / ("import_" + name);
+  return std::filesystem::path(testing::TempDir()) / ("import_" + std::to_string(::getpid()) + "_" + name);
 }
 
 std::filesystem::path asset(const std::string& name) {

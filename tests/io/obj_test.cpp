@@ -14,7 +14,7 @@ namespace smelt {
 namespace {
 
 std::filesystem::path temporary(const std::string& name) {
-  return std::filesystem::path(testing::TempDir()) / ("obj_" + name);
+  return std::filesystem::path(testing::TempDir()) / ("obj_" + std::to_string(::getpid()) + "_" + name);
 }
 
 SurfaceMesh make_surface() {

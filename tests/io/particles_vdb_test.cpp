@@ -17,7 +17,7 @@ namespace smelt {
 namespace {
 
 std::filesystem::path temporary(const std::string& name) {
-  return std::filesystem::path(testing::TempDir()) / ("particles_" + name);
+  return std::filesystem::path(testing::TempDir()) / ("particles_" + std::to_string(::getpid()) + "_" + name);
 }
 
 /// `n` particles scattered through a cube about `centre`, some of them in the same place.

@@ -16,7 +16,7 @@ namespace smelt {
 namespace {
 
 std::filesystem::path temporary(const std::string& name) {
-  return std::filesystem::path(testing::TempDir()) / ("surface_" + name);
+  return std::filesystem::path(testing::TempDir()) / ("surface_" + std::to_string(::getpid()) + "_" + name);
 }
 
 constexpr double radius = 0.5;

@@ -12,7 +12,7 @@ namespace smelt {
 namespace {
 
 std::filesystem::path temporary(const std::string& name) {
-  return std::filesystem::path(testing::TempDir()) / ("vdb_file_" + name);
+  return std::filesystem::path(testing::TempDir()) / ("vdb_file_" + std::to_string(::getpid()) + "_" + name);
 }
 
 openvdb::FloatGrid::Ptr make_grid(float value) {

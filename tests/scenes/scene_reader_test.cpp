@@ -6,6 +6,7 @@
 #include "scenes/scene_writer.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <string>
@@ -37,7 +38,9 @@ mesh = "ground"
 )";
 
 std::filesystem::path write_scene_file(const std::string& text) {
-  const auto path = std::filesystem::path(testing::TempDir()) / "scene_reader_test.toml";
+  const auto folder = std::filesystem::path(testing::TempDir()) / ("scene_reader_" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  const auto path = folder / "scene_reader_test.toml";
   std::ofstream(path) << text;
   return path;
 }
