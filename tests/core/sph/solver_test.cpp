@@ -236,6 +236,29 @@ TEST(Solver, ColdBlockStandsOnTheGround) {
   EXPECT_GT(lowest, 0.999 * std::cbrt(0.75 / 3.14159265358979) * spacing) << "a particle sank into the ground";
 }
 
+// XSPH moves particles with their neighbours' velocity and leaves the velocity itself alone [Monaghan 1989]; adding it to the velocity, as
+// [P 6-16] writes, would take epsilon of every difference between neighbours out of the motion at every step, however short.
+TEST(Solver, XsphMovesParticlesButTakesNoVelocity) {
+  Particles<2> p = make_ball<2>(0.3, 1000.0);
+  for (std::size_t i = 0; i < p.size(); ++i) p.velocity[i] = Vec<2>(std::sin(30.0 * p.position[i][1]), 0.0);
+  const auto start = p;
+  auto parameters = make_parameters<2>();
+  parameters.xsph = 0.5;
+  Solver<2, double> solver(parameters, {inviscid_material()}, {}, std::move(p));
+  solver.prepare();
+  constexpr double dt = 1e-7;
+  const double taken = solver.step(dt, 0.0).dt;
+  ASSERT_EQ(taken, dt);
+  double most_smoothed = 0.0;
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    const auto id = static_cast<std::size_t>(solver.particles().id[i]);
+    const Vec<2> transport = (solver.particles().position[i] - start.position[id]) / dt;
+    most_smoothed = std::max(most_smoothed, (transport - start.velocity[id]).norm());
+    EXPECT_LT((solver.particles().velocity[i] - start.velocity[id]).norm(), 1e-4) << "no more than acceleration over the step";
+  }
+  EXPECT_GT(most_smoothed, 0.1);
+}
+
 template <typename T>
 bool same_bytes(const std::vector<T>& a, const std::vector<T>& b) {
   return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
