@@ -146,11 +146,9 @@ void Solver<Dim, Real>::search_neighbours() {
   const auto order = compute_cell_order<Dim>(particles_.position, particles_.id, radius);
   for_each_array(particles_, [&](auto& values) { reorder(values, order); });
   reorder(transport_, order);
-  if (terms_.gas) {
-    // The rates of the last step look half a kick ahead (pack_gas).
-    reorder(acceleration_, order);
-    reorder(energy_rate_, order);
-  }
+  // The rates of the last step look half a kick ahead (pack_gas), or say what gradient balances them (pack_gradients).
+  if (terms_.gas || terms_.diffusion) reorder(acceleration_, order);
+  if (terms_.gas) reorder(energy_rate_, order);
   if (terms_.periodic)
     images_ = build_periodic_neighbour_lists<Dim>(parameters_.period, particles_.position, particles_.id, radius, pair_lanes<Real>, lists_);
   else
@@ -207,7 +205,7 @@ void Solver<Dim, Real>::evaluate_rates() {
     parallel_for_each(walls_->neighbours().size(), [&](std::size_t k) { apply_wall_rates(walls_->neighbours()[k]); });
 }
 
-/// Everywhere where density diffuses, else near walls only.
+/// Near walls; everywhere where density diffuses in a fluid with a stress (pack_gradients).
 template <int Dim, typename Real>
 void Solver<Dim, Real>::evaluate_pressure_gradients() {
   const auto evaluate = [&](std::size_t begin, std::size_t end) {
@@ -217,9 +215,9 @@ void Solver<Dim, Real>::evaluate_pressure_gradients() {
       pressure_gradient_[i] = compute_pressure_gradient<Dim, Real>(pressure_sums_[i], walls_ ? walls_->of(i) : nullptr,
                                                                    particles_.density[i], parameters_.gravity);
   };
-  if (terms_.diffusion)
+  if (terms_.diffusion && terms_.pair.stress)
     parallel_blocks(particles_.size(), evaluate);
-  else
+  else if (walls_)
     parallel_for_each(walls_->neighbours().size(), [&](std::size_t k) {
       const auto i = static_cast<std::size_t>(walls_->neighbours()[k].particle);
       evaluate(i, i + 1);

@@ -101,14 +101,18 @@ void Solver<Dim, Real>::pack_hourglass(std::size_t i, const Mat<Dim>& velocity_g
   for (int k = 0; k < n_symmetric<Dim>; ++k) record[1 + k] = static_cast<Real>((k < Dim ? 0.5 : 1.0) * half * doubled[k]);
 }
 
-/// Pressure gradients for the pair loops.
+/// Pressure gradients g for the diffusion of density. Where nothing but pressure (and artificial viscosity) acts, the fluid's motion says
+/// what gradient there must be, rho (gravity - a), as in [Rhie & Chow 1983]: the corrected gradient follows an error of the pressure where
+/// that is smooth, over two or three spacings at a wall, and would leave it alone for seconds. A stress would take part in a.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::pack_gradients() {
   constexpr std::size_t stride = gradient_stride<Dim>;
   const std::size_t n = particles_.size();
   packed_gradient_.resize((n + images_.size()) * stride);
   parallel_for_each(n + images_.size(), [&](std::size_t i) {
-    const Vec<Dim>& gradient = pressure_gradient_[i < n ? i : static_cast<std::size_t>(images_.source[i - n])];
+    const std::size_t source = i < n ? i : static_cast<std::size_t>(images_.source[i - n]);
+    const Vec<Dim> gradient = terms_.pair.stress ? pressure_gradient_[source]
+                                                 : Vec<Dim>(particles_.density[source] * (parameters_.gravity - acceleration_[source]));
     for (int a = 0; a < Dim; ++a) packed_gradient_[i * stride + static_cast<std::size_t>(a)] = static_cast<Real>(gradient[a]);
   });
 }
