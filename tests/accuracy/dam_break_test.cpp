@@ -29,11 +29,8 @@ Reference collapse(int n_across) {
   for (std::size_t i = 0; i < column.size(); ++i)
     column.density[i] = density_at_pressure(PressureLaw::tait, parameters.sound_speed,
                                             water_density * gravity * (2.0 * a - column.position[i][1]));
-  Obstacle<2> tank = make_wall({Vec<2>(floor_length, 0.0), Vec<2>(0.0, 0.0), Vec<2>(0.0, 4.0 * a)});
-  tank.response.friction = 1.0;
-  Colliders<2> colliders;
-  colliders.add(tank);
-  Solver<2, double> solver(parameters, {inviscid_material(water_density)}, std::move(colliders), std::move(column));
+  Colliders<2> tank = make_colliders({{Vec<2>(floor_length, 0.0), Vec<2>(0.0, 0.0), Vec<2>(0.0, 4.0 * a)}});
+  Solver<2, double> solver(parameters, {inviscid_material(water_density)}, std::move(tank), std::move(column));
   solver.prepare();
   Reference seen{"T,x/a", {{}, {}}};
   const double unit = std::sqrt(a / (2.0 * gravity)), interval = 0.02;

@@ -12,11 +12,13 @@ namespace smelt {
 constexpr double water_density = 1000.0;  ///< [kg/m^3]
 constexpr double gravity = 9.81;          ///< [m/s^2]
 
-/// A solid wall along `corners` [m] in order, with the fluid on the right hand of one who walks along them.
+/// A solid wall along `corners` [m] in order, with the fluid on the right hand of one who walks along them. Free
+/// slip: what touches it keeps its speed along it.
 inline Obstacle<2> make_wall(const std::vector<Vec<2>>& corners) {
   Obstacle<2> wall;
   wall.wall = true;
   wall.closed = true;
+  wall.response.friction = 1.0;
   for (std::size_t i = 1; i < corners.size(); ++i) wall.facets.push_back({corners[i - 1], corners[i]});
   return wall;
 }
