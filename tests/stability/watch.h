@@ -13,17 +13,23 @@
 
 namespace smelt {
 
-/// Kinetic energy, -sum m g.x, compression m c^2 (ln(rho/rho0) + rho0/rho - 1) and, where the stress is relaxed, its
-/// spring V S:S/(4 G) [J]: what no term of the method may add to.
+/// Energy of compression of a liquid [J/kg]: int p/rho^2 drho from rho0; s = rho/rho0.
+inline double compression_energy(PressureLaw law, double c, double s) {
+  if (law == PressureLaw::tait) return c * c / 7.0 * (std::pow(s, 6) / 6.0 + 1.0 / s - 7.0 / 6.0);
+  return c * c * (std::log(s) + 1.0 / s - 1.0);
+}
+
+/// Kinetic energy, -sum m g.x, compression and, where the stress is relaxed, its spring V S:S/(4 G) [J]: what no term of
+/// the method may add to.
 template <int Dim, typename Real>
 double total_energy(const Solver<Dim, Real>& solver) {
   const Particles<Dim>& p = solver.particles();
   const SolverParameters<Dim>& parameters = solver.parameters();
   double energy = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    const double m = solver.mass(i), rho0 = solver.material(i).density, c = parameters.sound_speed;
+    const double m = solver.mass(i), rho0 = solver.material(i).density;
     energy += 0.5 * m * p.velocity[i].squaredNorm() - m * parameters.gravity.dot(p.position[i]);
-    energy += m * c * c * (std::log(p.density[i] / rho0) + rho0 / p.density[i] - 1.0);
+    energy += m * compression_energy(parameters.equation_of_state.law, parameters.sound_speed, p.density[i] / rho0);
     if (!p.stress.empty() && parameters.shear_wave_speed > 0.0) {
       const double modulus = rho0 * parameters.shear_wave_speed * parameters.shear_wave_speed;
       energy += m / p.density[i] * to_matrix<Dim>(p.stress[i]).squaredNorm() / (4.0 * modulus);
