@@ -3,8 +3,8 @@
 //
 // All sets have x/a over T = t sqrt(2g/a); that Koshizuka & Oka write L for a changes nothing. A column in a computer
 // is let go at once, a diaphragm or a gate is not: each set has an origin of time of its own, fitted here (one number a
-// set, stated), as is usual. The front's late speed needs none and stands beside it. Bar: the spread between the
-// experiments as published where all three overlap, and 3 %.
+// set, stated), as is usual. The front's late speed, which hardly depends on it, stands beside it. Bar: the spread
+// between the experiments as published where all three overlap, and 3 %.
 
 #include "tests/accuracy/measure.h"
 #include "tests/accuracy/tank.h"
