@@ -115,7 +115,7 @@ void visit_simulation(SchemaVisitor& v, Scene& s) {
               "the sound speed where a material is `smd`, else 0"},
              s.solver.shear_wave_speed, non_negative);
     v.number({"artificial_viscosity", "alpha, damps sound"}, s.solver.artificial_viscosity, {0.0, 10.0});
-    v.number({"density_diffusion", "delta, smooths pressure noise in fluids with little viscosity; about 0.1"}, s.solver.density_diffusion,
+    v.number({"density_diffusion", "delta, smooths pressure noise in fluids with little viscosity; 0.1 to 0.3"}, s.solver.density_diffusion,
              {0.0, 1.0});
     v.number({"hourglass_control", "share of the viscosity that acts on motions of the lattice that no velocity gradient sees; of viscous scenes"},
              s.solver.hourglass_control, unit_interval);

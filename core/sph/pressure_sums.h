@@ -24,7 +24,7 @@ template <int Dim>
 inline constexpr int gradient_stride = Dim == 3 ? 4 : Dim;
 
 /// 2 sum V_j [p_j - p_i + (g_i + g_j)/2 . x_ij] x_ij.grad_w_ij / (r^2 + 0.01 h^2) [Pa/m^2], with the sign of a Laplacian: a
-/// diffusion of pressure (and so density) on what its corrected gradients g [Pa/m] do not explain, so that a linear field, such as
+/// diffusion of pressure (and so density) on what its gradients g [Pa/m] do not explain, so that a linear field, such as
 /// water's at rest, is left alone  [Antuono 2010]. `gradients`: one of gradient_stride numbers per record of `fields`. `sums`: one
 /// entry per particle.
 template <int Dim, typename Real>

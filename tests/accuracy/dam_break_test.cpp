@@ -1,9 +1,10 @@
-// The collapse of a water column a x 2a along a dry floor: its front against the experiments of Martin & Moyce (1952) and Koshizuka &
-// Oka (1996).
+// The collapse of a water column a x 2a along a dry floor: its front against the experiments of Martin & Moyce (1952)
+// and Koshizuka & Oka (1996).
 //
-// All sets have x/a over T = t sqrt(2g/a); that Koshizuka & Oka write L for a changes nothing. A column in a computer is let go at once, a
-// diaphragm or a gate is not: each set has an origin of time of its own, fitted here (one number a set, stated), as is usual. The front's
-// late speed needs none and stands beside it. Bar: the spread between the experiments as published where all three overlap, and 3 %.
+// All sets have x/a over T = t sqrt(2g/a); that Koshizuka & Oka write L for a changes nothing. A column in a computer
+// is let go at once, a diaphragm or a gate is not: each set has an origin of time of its own, fitted here (one number a
+// set, stated), as is usual. The front's late speed, which hardly depends on it, stands beside it. Bar: the spread
+// between the experiments as published where all three overlap, and 3 %.
 
 #include "tests/accuracy/measure.h"
 #include "tests/accuracy/tank.h"
@@ -45,7 +46,9 @@ Reference collapse(int n_across) {
 }
 
 /// Before it is let go a column stands.
-double front_at(const Reference& run, double t) { return t <= 0.0 ? 1.0 : run.at(t); }
+double front_at(const Reference& run, double t) {
+  return t <= 0.0 ? 1.0 : run.at(t);
+}
 
 /// Relative differences of a run whose origin lies `origin` later than the experiment's.
 Norms compare(const Reference& run, const Reference& experiment, double origin) {
@@ -88,9 +91,11 @@ TEST(DamBreak, FrontFollowsTheExperiments) {
   for (std::size_t k = 0; k < experiments.size(); ++k) {
     const std::string problem = fmt::format("dam break; {}", names[k]);
     const double origin = fit_origin(run, experiments[k]);
-    report_row({problem, "front position relative; max; origin of time fitted", resolution, compare(run, experiments[k], origin).max, bar});
+    report_row({problem, "front position relative; max; origin of time fitted", resolution,
+                compare(run, experiments[k], origin).max, bar});
     report_row({problem, "that origin [sqrt(a/2g)]", resolution, origin});
-    report_row({problem, "front position relative; max; both from T = 0", resolution, compare(run, experiments[k], 0.0).max});
+    report_row(
+        {problem, "front position relative; max; both from T = 0", resolution, compare(run, experiments[k], 0.0).max});
     const double from = 2.3, to = 2.95;
     const double ours = front_at(run, to - origin) - front_at(run, from - origin);
     report_row({problem, "front speed relative; T 2.3 to 2.95", resolution,

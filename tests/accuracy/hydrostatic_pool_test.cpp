@@ -1,4 +1,5 @@
-// Water at rest for ten seconds over a flat floor with its corners, in a tilted box and over a slope: p = rho g (level - y).
+// Water at rest for ten seconds over a flat floor with its corners, in a tilted box and over a slope: p = rho g (level
+// - y).
 
 #include "tests/accuracy/measure.h"
 #include "tests/accuracy/tank.h"
@@ -55,13 +56,15 @@ Pool box_pool(const std::string& name, double degrees) {
   return pool;
 }
 
-/// A flat floor that ends in a slope of 30 degrees. All sites in front of the slope are filled, so that the volume is right, and those
-/// nearer than half a spacing are moved that far off; the level follows from the volume. A lattice that starts farther off has gaps to
-/// sink into, and sloshes for longer than the test runs.
+/// A flat floor that ends in a slope of 30 degrees. All sites in front of the slope are filled, so that the volume is
+/// right, and those nearer than half a spacing are moved that far off; the level follows from the volume. A lattice
+/// that starts farther off has gaps to sink into, and sloshes for longer than the test runs.
 Pool slope_pool() {
   const double angle = std::numbers::pi / 6.0, run = 1.0 / std::tan(angle);
   const Vec<2> normal(std::sin(angle), std::cos(angle));
-  Pool pool{"30 degree slope", {Vec<2>(width, 2.0 * depth), Vec<2>(width, 0.0), Vec<2>(0.0, 0.0), Vec<2>(-2.0 * depth * run, 2.0 * depth)}};
+  Pool pool{
+      "30 degree slope",
+      {Vec<2>(width, 2.0 * depth), Vec<2>(width, 0.0), Vec<2>(0.0, 0.0), Vec<2>(-2.0 * depth * run, 2.0 * depth)}};
   std::vector<Vec<2>> sites;
   for (int j = 0; j < n_deep; ++j)
     for (int i = -static_cast<int>(std::ceil(n_deep * run)); i < 2 * n_deep; ++i) {
@@ -101,7 +104,8 @@ void measure_pressure(const Solver<2, double>& solver, const Pool& pool, Seen& s
   const auto& p = solver.particles();
   for (std::size_t i = 0; i < p.size(); ++i) {
     const double pressure = linear_pressure(solver.parameters().sound_speed, water_density, p.density[i]);
-    const double error = std::abs(pressure - water_density * gravity * (pool.level - p.position[i].dot(pool.up))) / scale;
+    const double error =
+        std::abs(pressure - water_density * gravity * (pool.level - p.position[i].dot(pool.up))) / scale;
     seen.particle = std::max(seen.particle, error);
   }
 }
@@ -114,7 +118,8 @@ Seen rest(const Pool& pool, double duration) {
     sticky.response.friction = 0.0;
     Colliders<2> colliders;
     colliders.add(sticky);
-    Solver<2, double> oil(parameters, {newtonian_material(water_density, 0.02 * water_density)}, std::move(colliders), particles);
+    Solver<2, double> oil(parameters, {newtonian_material(water_density, 0.02 * water_density)}, std::move(colliders),
+                          particles);
     oil.prepare();
     advance_by(oil, pool.settling);
     particles = oil.particles();
@@ -123,10 +128,12 @@ Seen rest(const Pool& pool, double duration) {
     for (Vec<2>& v : particles.velocity) v.setZero();
   }
   std::vector<Vec<2>> start(particles.size());
-  for (std::size_t i = 0; i < particles.size(); ++i) start[static_cast<std::size_t>(particles.id[i])] = particles.position[i];
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    start[static_cast<std::size_t>(particles.id[i])] = particles.position[i];
 
   Seen seen;
-  Solver<2, double> water(parameters, {inviscid_material(water_density)}, make_colliders({pool.wall}), std::move(particles));
+  Solver<2, double> water(parameters, {inviscid_material(water_density)}, make_colliders({pool.wall}),
+                          std::move(particles));
   water.prepare();
   constexpr double interval = 0.1;
   for (int k = 1; k * interval < duration + 0.5 * interval; ++k) {
@@ -153,9 +160,15 @@ void test_pool(const Pool& pool) {
   report_row({problem, "drift of particles [spacings]; rms", resolution, seen.drift});
 }
 
-TEST(HydrostaticPool, FlatFloorAndCorners) { test_pool(box_pool("flat floor", 0.0)); }
-TEST(HydrostaticPool, TiltedBox) { test_pool(box_pool("box tilted by 17 degrees", 17.0)); }
-TEST(HydrostaticPool, Slope) { test_pool(slope_pool()); }
+TEST(HydrostaticPool, FlatFloorAndCorners) {
+  test_pool(box_pool("flat floor", 0.0));
+}
+TEST(HydrostaticPool, TiltedBox) {
+  test_pool(box_pool("box tilted by 17 degrees", 17.0));
+}
+TEST(HydrostaticPool, Slope) {
+  test_pool(slope_pool());
+}
 
 }  // namespace
 }  // namespace smelt

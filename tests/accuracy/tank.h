@@ -29,8 +29,8 @@ inline Colliders<2> make_colliders(const std::vector<std::vector<Vec<2>>>& walls
   return colliders;
 }
 
-/// Water `depth` [m] deep of particles `spacing` [m] apart: c ten times the speed sqrt(2 g depth) that it can fall to, and a tenth of
-/// density diffusion, so that pressure stays smooth.
+/// Water `depth` [m] deep of particles `spacing` [m] apart: c ten times the speed sqrt(2 g depth) that it can fall to,
+/// and a tenth of density diffusion, so that pressure stays smooth.
 inline SolverParameters<2> make_water_parameters(double spacing, double depth, double artificial_viscosity) {
   auto parameters = make_parameters<2>(spacing, 10.0 * std::sqrt(2.0 * gravity * depth));
   parameters.smoothing_length = 1.3 * spacing;
@@ -47,8 +47,9 @@ inline double density_at_pressure(PressureLaw law, double c, double p) {
   return water_density * (law == PressureLaw::tait ? std::pow(1.0 + 7.0 * s, 1.0 / 7.0) : 1.0 + s);
 }
 
-/// The pressure's excess [Pa] over that of water at rest under `level` [m] (measured against gravity), as a gauge at `point` shows it:
-/// the mean over the particles within the kernel's support, with its weights. NaN where there are none.
+/// The pressure's excess [Pa] over that of water at rest under `level` [m] (measured against gravity), as a gauge at
+/// `point` shows it: the mean over the particles within the kernel's support, with its weights. NaN where there are
+/// none.
 inline double gauge_excess(const Solver<2, double>& solver, double level, const Vec<2>& point) {
   const auto& p = solver.particles();
   const auto& parameters = solver.parameters();
@@ -59,14 +60,16 @@ inline double gauge_excess(const Solver<2, double>& solver, double level, const 
     const double q = (p.position[i] - point).norm() / reach;
     if (q >= 1.0) continue;
     const double weight = std::pow(1.0 - q, 4) * (1.0 + 4.0 * q);
-    const double pressure = compute_pressure(parameters.equation_of_state, parameters.sound_speed, water_density, p.density[i], 0.0);
+    const double pressure =
+        compute_pressure(parameters.equation_of_state, parameters.sound_speed, water_density, p.density[i], 0.0);
     sum += weight * (pressure - water_density * parameters.gravity.norm() * (level - p.position[i].dot(up)));
     weights += weight;
   }
   return weights > 0.0 ? sum / weights : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Farthest that a particle's centre is behind a wall's plane within reach of it [m]; 0 where none is. Corners must be convex fluid.
+/// Farthest that a particle's centre is behind a wall's plane within reach of it [m]; 0 where none is. Corners must be
+/// convex fluid.
 inline double deepest_in_wall(const Solver<2, double>& solver, const std::vector<std::vector<Vec<2>>>& walls) {
   double deepest = 0.0;
   for (const auto& corners : walls)

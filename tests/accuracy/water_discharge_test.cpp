@@ -1,7 +1,8 @@
 // Water discharge [S 4.5.3.2]: a column L x 2L of 1152 particles runs out of its vessel, against Torricelli.
 //
-// The text's figure of the vessel is lost: here the opening is L/4 high, in the side at the floor. Its lips are sharp, so that the jet is
-// free on either side, and past its narrowing the pressure is nought: with h the level and V = -dh/dt,
+// The text's figure of the vessel is lost: here the opening is L/4 high, in the side at the floor. Its lips are sharp,
+// so that the jet is free on either side, and past its narrowing the pressure is nought: with h the level and V =
+// -dh/dt,
 //   v^2 = 2 g (h - y) + V^2  (Bernoulli from the surface to a particle at height y).
 // [S] sums density [S 4.20], with a quintic kernel; here as in every scene of this project: continuity, cubic spline.
 
@@ -21,7 +22,8 @@ constexpr double width = 0.146, height = 2.0 * width, opening = 0.25 * width;
 Colliders<2> make_vessel() {
   constexpr double lip = 0.5 * opening, top = 1.5 * height;
   return make_colliders({{Vec<2>(width - lip, -2.0 * lip), Vec<2>(width, 0.0), Vec<2>(0.0, 0.0), Vec<2>(0.0, top)},
-                         {Vec<2>(width, top), Vec<2>(width, opening), Vec<2>(width + lip, opening + 2.0 * lip), Vec<2>(width + lip, top)}});
+                         {Vec<2>(width, top), Vec<2>(width, opening), Vec<2>(width + lip, opening + 2.0 * lip),
+                          Vec<2>(width + lip, top)}});
 }
 
 /// Sums over the particles of the jet from one to two openings beyond the lips, all times.
@@ -72,8 +74,10 @@ void test_discharge(int n_across, std::optional<double> bar) {
   }
   const std::string resolution = fmt::format("{} particles", n_particles);
   ASSERT_GT(jet.n, 0);
-  report_row({"water discharge", "speed of the jet over Torricelli's less 1; mean 0.2 to 0.3 s", resolution, std::abs(jet.speed / jet.torricelli - 1.0), bar});
-  report_row({"water discharge", "fastest particle of the jet over Torricelli's less 1", resolution, jet.fastest - 1.0, 0.3});
+  report_row({"water discharge", "speed of the jet over Torricelli's less 1; mean 0.2 to 0.3 s", resolution,
+              std::abs(jet.speed / jet.torricelli - 1.0), bar});
+  report_row(
+      {"water discharge", "fastest particle of the jet over Torricelli's less 1", resolution, jet.fastest - 1.0, 0.3});
   report_row({"water discharge", "particles found behind walls", resolution, leaked, 0.0});
 }
 
