@@ -185,6 +185,7 @@ double compute_expected_speed(const Scene& scene, const Box3& scene_bounds) {
   const double height = g > 0.0 ? scene_bounds.extent().dot(scene.gravity.cwiseAbs()) / g : 0.0;
   double start = 0.0;
   for (const BodySettings& body : scene.bodies) start = std::max(start, body.velocity.norm());
+  for (const ColliderSettings& c : scene.colliders) start = std::max(start, c.velocity.norm() + c.surface_velocity.norm());
   return std::sqrt(2.0 * g * height) + start;
 }
 
@@ -193,6 +194,16 @@ double automatic_sound_speed(double expected_speed) {
     fail("[solver] sound_speed_m_s: nothing moves at the start and there is no gravity, so it does not follow from the scene; give it, "
          "about ten times the fastest speed expected");
   return 10.0 * expected_speed;
+}
+
+Obstacle<3> to_obstacle(const ColliderSettings& s) {
+  Obstacle<3> obstacle;
+  obstacle.response = {s.friction, s.restitution};
+  obstacle.wall = s.wall;
+  obstacle.velocity = s.velocity;
+  obstacle.surface_velocity = s.surface_velocity;
+  obstacle.temperature = s.temperature;
+  return obstacle;
 }
 
 void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetup& setup) {
@@ -264,8 +275,7 @@ SimulationSetup build_simulation(const Scene& scene) {
 
   Box3 scene_bounds = setup.body_bounds;
   for (const ColliderSettings& collider : scene.colliders) {
-    setup.responses.push_back({collider.friction, collider.restitution});
-    setup.walls.push_back(collider.wall);
+    setup.obstacles.push_back(to_obstacle(collider));
     if (collider.mesh == "ground") {
       scene_bounds.extend(Vec3(setup.body_bounds.centre()[0], collider.ground_height, setup.body_bounds.centre()[2]));
       setup.colliders.emplace_back();
@@ -292,8 +302,8 @@ Colliders<3> build_colliders(const SimulationSetup& setup) {
     std::vector<Simplex<3>> triangles;
     triangles.reserve(mesh.triangles.size());
     for (const auto& t : mesh.triangles) triangles.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
-    Obstacle<3> obstacle{std::move(triangles), setup.responses[k]};
-    obstacle.wall = setup.walls[k];
+    Obstacle<3> obstacle = setup.obstacles[k];
+    obstacle.facets = std::move(triangles);
     // Wound inward it bounds no solid that could be filled: what is in it is outside.
     obstacle.closed = compute_topology(mesh).closed() && compute_volume(mesh) > 0.0;
     colliders.add(std::move(obstacle));

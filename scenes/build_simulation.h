@@ -16,8 +16,7 @@ struct SimulationSetup {
   SolverParameters<3> parameters;
   std::vector<Material> materials;
   std::vector<TriangleMesh> colliders;     ///< placed in the world [m], one a [[collider]]
-  std::vector<ContactResponse> responses;  ///< one a collider
-  std::vector<bool> walls;                 ///< which of them are walls
+  std::vector<Obstacle<3>> obstacles;      ///< what each of them does; without the facets, which are the mesh's
   double spacing = 0.0;                    ///< between particles [m]
   double body_volume = 0.0;                ///< of all bodies' meshes [m^3]
   Box3 body_bounds;                        ///< of all bodies' meshes [m]

@@ -63,4 +63,15 @@ RenderScene build_view(const Scene& scene) {
   return view;
 }
 
+void place_colliders(const Scene& scene, double time, const std::vector<ColliderView>& at_start, RenderScene& view) {
+  std::size_t drawn = 0;
+  for (const ColliderSettings& collider : scene.colliders) {
+    if (collider.mesh == "ground") continue;
+    const std::size_t k = drawn++;
+    if (collider.velocity.isZero()) continue;
+    view.colliders[k] = at_start[k];
+    for (Vec3& x : view.colliders[k].mesh.vertices) x += time * collider.velocity;
+  }
+}
+
 }  // namespace smelt

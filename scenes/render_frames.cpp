@@ -10,7 +10,8 @@
 namespace smelt {
 
 void render_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report, Progress& progress) {
-  const RenderScene view = build_view(scene);
+  RenderScene view = build_view(scene);
+  const auto colliders_at_start = view.colliders;
   check_scene(view);
   create_directories_or_fail(folder.frames());
   RenderOptions quality;
@@ -24,6 +25,7 @@ void render_frames(const Scene& scene, const OutputFolder& folder, const StageOp
     if (options.resume && all_exist({picture})) continue;
 
     const CostMeter meter;
+    place_colliders(scene, (frame - 1) / scene.shot.fps, colliders_at_start, view);
     const SurfaceMesh surface = read_surface(folder.surface_obj(frame), folder.surface_vdb(frame));
     try {
       write_png(picture, render_frame(surface, view, quality, frame));

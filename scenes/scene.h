@@ -108,6 +108,9 @@ struct ColliderSettings {
   double friction = 0.0;
   double restitution = 0.0;
   bool wall = true;
+  Vec3 velocity = Vec3::Zero();
+  Vec3 surface_velocity = Vec3::Zero();
+  std::optional<double> temperature;
   Vec3 colour{0.35, 0.36, 0.38};
 };
 

@@ -113,6 +113,13 @@ void validate_bodies(const Scene& scene, SceneErrors& errors) {
   }
 }
 
+void validate_collider(const ColliderSettings& s, bool hot, const std::string& path, SceneErrors& errors) {
+  if (s.mesh == "ground" && !s.velocity.isZero())
+    errors.add(path + ".velocity_m_s", "the ground has no end and cannot move; its surface may (surface_velocity_m_s), or a mesh");
+  if (s.temperature && !hot) errors.add(path + ".temperature_K", "no material has heat; give it one, or leave this out");
+  if (s.temperature && !s.wall) errors.add(path + ".temperature_K", "heat passes through walls only; set wall = true, or leave this out");
+}
+
 void validate_periodic(const PeriodicSettings& s, SceneErrors& errors) {
   if (!s.lower) errors.add("periodic.lower_m", "missing: lowest corner of the box that repeats");
   if (!s.upper) errors.add("periodic.upper_m", "missing: highest corner of the box that repeats");
@@ -149,6 +156,7 @@ void validate_scene(const Scene& scene, SceneErrors& errors) {
   for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
     const std::string path = fmt::format("collider.{}", k);
     validate_placement(scene.colliders[k].placement, path, errors);
+    validate_collider(scene.colliders[k], n_hot > 0, path, errors);
     if (scene.colliders[k].mesh != "ground") validate_mesh_file(scene, scene.colliders[k].mesh, path, errors);
   }
   if (scene.domain.lower && scene.domain.upper && !((*scene.domain.upper - *scene.domain.lower).array() > 0.0).all())

@@ -1,6 +1,7 @@
 #include "scenes/build_simulation.h"
 
 #include "core/error.h"
+#include "scenes/build_view.h"
 #include "scenes/scene_reader.h"
 
 #include <gtest/gtest.h>
@@ -47,6 +48,38 @@ TEST(BuildSimulation, BodiesShareTheCountByVolume) {
   const auto n_small = std::count_if(setup.particles.position.begin(), setup.particles.position.end(), [](const Vec3& x) { return x[0] < 1.5; });
   EXPECT_NEAR(static_cast<double>(n_small), 3000.0 / 9.0, 0.02 * 3000.0 / 9.0);
   EXPECT_NEAR(static_cast<double>(setup.particles.size()), 3000.0, 30.0);
+}
+
+TEST(BuildSimulation, CollidersCarryWhatTheSceneSaysOfThem) {
+  Scene scene = bunny_scene({"particles.count=500", "collider.0.friction=0.4", "collider.0.surface_velocity_m_s=[1,0,0]"});
+  scene.colliders.push_back(scene.colliders[0]);
+  ColliderSettings& press = scene.colliders[1];
+  press.mesh = "assets/bunny.obj";
+  press.placement.scale = 0.1;
+  press.placement.translate = Vec3(0, 2, 0);
+  press.velocity = Vec3(0, -0.5, 0);
+  press.temperature = 450.0;
+  Colliders<3> colliders = build_colliders(build_simulation(scene));
+  ASSERT_EQ(colliders.placed().size(), 2u);
+  const Obstacle<3>& ground = colliders.placed()[0].obstacle;
+  EXPECT_EQ(ground.response.friction, 0.4);
+  EXPECT_EQ(ground.surface_velocity, Vec3(1, 0, 0));
+  EXPECT_FALSE(ground.closed);
+  EXPECT_TRUE(ground.wall);
+  EXPECT_FALSE(ground.temperature.has_value());
+  EXPECT_TRUE(colliders.placed()[1].obstacle.closed);
+  EXPECT_EQ(colliders.placed()[1].obstacle.temperature, 450.0);
+  colliders.place_at(2.0);
+  EXPECT_EQ(colliders.placed()[1].displacement, Vec3(0, -1, 0));
+
+  // Pictures show it where the simulation has it.
+  RenderScene view = build_view(scene);
+  const auto at_start = view.colliders;
+  ASSERT_EQ(at_start.size(), 1u);
+  place_colliders(scene, 2.0, at_start, view);
+  EXPECT_EQ(view.colliders[0].mesh.vertices[7], Vec3(at_start[0].mesh.vertices[7] - Vec3(0, 1, 0)));
+  place_colliders(scene, 0.0, at_start, view);
+  EXPECT_EQ(view.colliders[0].mesh.vertices[7], at_start[0].mesh.vertices[7]);
 }
 
 TEST(BuildSimulation, RefusesABodyUnderTheGround) {

@@ -129,6 +129,13 @@ TEST(SceneReader, SolverChoices) {
   expect_error(solver + "background_pressure_Pa = -1\n", "solver.background_pressure_Pa", "of at least 0, is -1");
 }
 
+TEST(SceneReader, ColliderChoices) {
+  const std::string ground = std::string(good_scene) + "[[collider]]\nmesh = \"ground\"\n";
+  expect_error(ground + "velocity_m_s = [0, 1, 0]\n", "collider.1.velocity_m_s", "the ground has no end and cannot move");
+  expect_error(ground + "wall = 1\n", "collider.1.wall", "must be true or false");
+  expect_error(ground + "temperature_K = 500\nwall = false\n", "collider.1.temperature_K", "heat passes through walls only");
+}
+
 TEST(SceneReader, ReportsAllErrorsAtOnceInTheOrderOfTheFile) {
   std::string bad = replaced(good_scene, "frames = 10", "frames = -1\ncolour = 3");
   bad = replaced(bad, "material = \"wax\"", "material = \"lava\"");
