@@ -286,10 +286,35 @@ FacetIntegrals<Dim> integrate_facet(const WallKernel<Dim>& kernel, const Simplex
   return sum;
 }
 
-#define SMELT_INSTANTIATE(Dim)                                                                                    \
-  template class WallKernel<Dim>;                                                                                 \
-  template FacetIntegrals<Dim> integrate_facet<Dim>(const WallKernel<Dim>&, const Simplex<Dim>&, const Vec<Dim>&, \
-                                                    const Vec<Dim>&);
+template <int Dim>
+FacetIntegrals<Dim> integrate_small_facet(const WallKernel<Dim>& kernel, const Simplex<Dim>& facet, const Vec<Dim>& normal,
+                                          const Vec<Dim>& point) {
+  FacetIntegrals<Dim> sum;
+  Vec<Dim> y = -point;
+  for (const Vec<Dim>& corner : facet) y += corner / Dim;
+  const double r = y.norm(), h = kernel.smoothing_length(), q = r / h;
+  double size = 1.0;
+  if constexpr (Dim == 2) size = (facet[1] - facet[0]).norm();
+  if constexpr (Dim == 3) size = 0.5 * (facet[1] - facet[0]).cross(facet[2] - facet[0]).norm();
+  double value = 0.0, ray = 0.0;
+  for (const RadialTerm& term : kernel.terms()) {
+    if (q >= term.radius) break;
+    value += evaluate(term.shape, q);
+    ray += evaluate(term.ray, q);
+  }
+  sum.area = size * value / std::pow(h, Dim);
+  sum.first = sum.area * y;
+  // The solid angle it fills, signed by the side.
+  sum.solid = -size * y.dot(normal) / std::pow(r, Dim) * ray;
+  return sum;
+}
+
+#define SMELT_INSTANTIATE(Dim)                                                                                          \
+  template class WallKernel<Dim>;                                                                                       \
+  template FacetIntegrals<Dim> integrate_facet<Dim>(const WallKernel<Dim>&, const Simplex<Dim>&, const Vec<Dim>&,       \
+                                                    const Vec<Dim>&);                                                   \
+  template FacetIntegrals<Dim> integrate_small_facet<Dim>(const WallKernel<Dim>&, const Simplex<Dim>&, const Vec<Dim>&, \
+                                                          const Vec<Dim>&);
 SMELT_INSTANTIATE(1)
 SMELT_INSTANTIATE(2)
 SMELT_INSTANTIATE(3)

@@ -31,6 +31,16 @@ double side_of(const Obstacle<Dim>& obstacle, const SimplexBvh<Dim>& bvh, const 
   return height < 0.0 ? -1.0 : 1.0;
 }
 
+/// Whether one point does for a facet: no longer than a quarter of h, and twice as far off.
+template <int Dim>
+bool is_small(const Simplex<Dim>& facet, const Vec<Dim>& point, double h) {
+  if constexpr (Dim == 1) return false;
+  const double limit2 = h * h / 16.0;
+  for (int k = 0; k < Dim; ++k)
+    if ((facet[(k + 1) % Dim] - facet[k]).squaredNorm() > limit2) return false;
+  return (facet[0] - point).squaredNorm() > 9.0 * limit2;  // a corner three lengths off: the rest at least two
+}
+
 }  // namespace
 
 template <int Dim>
@@ -99,18 +109,21 @@ void Walls<Dim>::update_one(const Colliders<Dim>& colliders, const Vec<Dim>& pos
     for (const Candidate& candidate : candidates.subspan(begin, end - begin)) {
       const Simplex<Dim>& facet = bvh.simplices()[candidate.facet];
       const Vec<Dim> normal = side * facet_normal<Dim>(facet);
-      const FacetIntegrals<Dim> integrals = integrate_facet<Dim>(kernel_, facet, normal, local);
+      const FacetIntegrals<Dim> integrals = is_small<Dim>(facet, local, kernel_.smoothing_length())
+                                                ? integrate_small_facet<Dim>(kernel_, facet, normal, local)
+                                                : integrate_facet<Dim>(kernel_, facet, normal, local);
       if (integrals.area == 0.0) continue;
       seen.solid += integrals.solid;
       seen.moment += integrals.solid * Mat<Dim>::Identity() - integrals.first * normal.transpose();
 
-      // Facets of one plane are one contact.
-      const double distance = (local - facet[0]).dot(normal);
-      constexpr double same = 1e-9;
+      // Sums first; the normal is the mean once they are whole.
+      constexpr double same_direction = 0.985;
+      const bool in_front = (local - facet[0]).dot(normal) > 0.0;
       WallContact<Dim>* contact = std::find_if(first, last, [&](const WallContact<Dim>& c) {
-        return c.obstacle == o && c.normal.dot(normal) > 1.0 - same && std::abs(c.distance - distance) < same * kernel_.support_radius();
+        return c.obstacle == o && in_front == (c.distance > 0.0) && c.normal.dot(normal) > same_direction * c.normal.norm();
       });
-      if (contact == last) *last++ = {normal, Vec<Dim>::Zero(), distance, 0.0, 0.0, 0.0, 0.0, 0.0, o};
+      if (contact == last) *last++ = {Vec<Dim>::Zero(), Vec<Dim>::Zero(), in_front ? 1.0 : -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, o};
+      contact->normal += integrals.area * normal;
       contact->first += integrals.first;
       contact->area += integrals.area;
       contact->solid += integrals.solid;
@@ -118,6 +131,10 @@ void Walls<Dim>::update_one(const Colliders<Dim>& colliders, const Vec<Dim>& pos
   }
   seen.moment = 0.5 * (seen.moment + seen.moment.transpose()).eval();
   for (WallContact<Dim>* contact = first; contact != last; ++contact) {
+    const double facets_area = contact->area;
+    contact->area = contact->normal.norm();
+    contact->normal /= contact->area;
+    contact->distance = -contact->first.dot(contact->normal) / facets_area;
     // A plane seen from behind takes back what a plane in front of it gave: nothing goes on linearly from there.
     if (contact->distance <= 0.0) continue;
     const double distance = std::max(contact->distance, least_distance_);

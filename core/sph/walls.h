@@ -16,7 +16,8 @@
 
 namespace smelt {
 
-/// One plane of a wall as a particle sees it.
+/// One plane of a wall as a particle sees it, or a patch of a curved one: facets whose normals are within some ten degrees are one contact,
+/// with their mean plane.
 template <int Dim>
 struct WallContact {
   Vec<Dim> normal;          ///< n

@@ -1,10 +1,12 @@
 #include "core/sph/walls.h"
 
+#include "core/geometry/facet.h"
 #include "core/sph/solver.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 namespace smelt {
 namespace {
@@ -191,6 +193,72 @@ TEST(Walls, APistonDrivesTheFluid) {
     momentum += solver.particles().velocity[i][1];
   }
   EXPECT_GE(momentum / static_cast<double>(solver.particles().size()), 5.0);
+}
+
+/// What a particle at `x` sees of an obstacle, with h = 1.
+WallNeighbour<3> look(const Colliders<3>& colliders, const Vec3& x, Walls<3>& walls) {
+  const std::vector<Vec3> position{x};
+  walls.find(colliders, position, 0.0);
+  walls.update(colliders, position);
+  return *walls.of(0);
+}
+
+// Facets far smaller than h are taken by one point each: the same plane to a few thousandths.
+TEST(Walls, AFineMeshIsTheSameWall) {
+  Obstacle<3> coarse = make_plane<3>(0.0), fine;
+  constexpr double edge = 0.15, reach = 3.0;
+  const int n = static_cast<int>(2.0 * reach / edge);
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < n; ++k) {
+      const auto corner = [&](int a, int b) { return Vec3(-reach + (i + a) * edge, 0.0, -reach + (k + b) * edge); };
+      fine.facets.push_back({corner(0, 0), corner(0, 1), corner(1, 1)});
+      fine.facets.push_back({corner(0, 0), corner(1, 1), corner(1, 0)});
+    }
+  fine.wall = true;
+  const Colliders<3> a = one(std::move(coarse)), b = one(std::move(fine));
+  for (const double height : {0.3, 0.45, 0.9, 1.6}) {
+    Walls<3> of_coarse(WallKernel<3>(1.0), 0.8, 0.2), of_fine(WallKernel<3>(1.0), 0.8, 0.2);
+    const WallNeighbour<3> expected = look(a, Vec3(0.02, height, 0.05), of_coarse), found = look(b, Vec3(0.02, height, 0.05), of_fine);
+    ASSERT_EQ(expected.contacts.size(), 1u);
+    ASSERT_EQ(found.contacts.size(), 1u);
+    EXPECT_NEAR(found.contacts[0].distance, height, 1e-9);
+    EXPECT_NEAR(found.contacts[0].area / expected.contacts[0].area, 1.0, 5e-3) << height;
+    EXPECT_NEAR(found.solid, expected.solid, 2e-3 * 0.5) << height;
+    EXPECT_NEAR((found.moment - expected.moment).norm(), 0.0, 3e-3) << height;
+  }
+}
+
+// A ball of many facets is a few patches, not a plane for each.
+TEST(Walls, ACurvedMeshIsAFewPatches) {
+  Obstacle<3> ball;
+  constexpr int n = 48;
+  const auto on_ball = [](int i, int k) {
+    const double polar = std::numbers::pi * i / n, azimuth = 2.0 * std::numbers::pi * k / n;
+    return Vec3(5.0 * std::sin(polar) * std::cos(azimuth), 5.0 * std::cos(polar), 5.0 * std::sin(polar) * std::sin(azimuth));
+  };
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < n; ++k) {
+      if (i > 0) ball.facets.push_back({on_ball(i, k), on_ball(i, k + 1), on_ball(i + 1, k)});
+      if (i < n - 1) ball.facets.push_back({on_ball(i, k + 1), on_ball(i + 1, k + 1), on_ball(i + 1, k)});
+    }
+  ball.wall = ball.closed = true;
+  const std::vector<Simplex<3>> facets = ball.facets;
+  const Colliders<3> colliders = one(std::move(ball));
+  const Vec3 x(3.5, 4.1, 0.3);  // some 0.4 above it
+  Walls<3> walls(WallKernel<3>(1.0), 0.8, 0.2);
+  const WallNeighbour<3> seen = look(colliders, x, walls);
+  EXPECT_LT(seen.contacts.size(), 25u);
+  Vec3 push = Vec3::Zero(), expected = Vec3::Zero();
+  double solid = 0.0;
+  for (const auto& facet : facets) {
+    const Vec3 normal = facet_normal<3>(facet);
+    const FacetIntegrals<3> exact = integrate_facet<3>(WallKernel<3>(1.0), facet, normal, x);
+    expected += exact.area * normal;
+    solid += exact.solid;
+  }
+  for (const WallContact<3>& contact : seen.contacts) push += contact.area * contact.normal;
+  EXPECT_NEAR((push - expected).norm() / expected.norm(), 0.0, 5e-3);
+  EXPECT_NEAR(seen.solid, solid, 2e-3);
 }
 
 TEST(Walls, ResumeFromStateAloneIsExact) {
