@@ -99,7 +99,9 @@ void report_row(const Row& row) {
   if (const char* folder = std::getenv("SMELT_ACCURACY_FOLDER")) {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
     CHECK(test != nullptr);
-    const auto path = std::filesystem::path(folder) / fmt::format("{}.{}.csv", test->test_suite_name(), test->name());
+    std::string name = fmt::format("{}.{}.csv", test->test_suite_name(), test->name());
+    std::replace(name.begin(), name.end(), '/', '.');  // of parameterised tests
+    const auto path = std::filesystem::path(folder) / name;
     std::ofstream file(path, std::ios::app);
     file << fmt::format("{},{},{},{:.3g},{},{},{}\n", row.problem, row.quantity, row.resolution, row.error,
                         cell(row.bar, ""), cell(row.order, ""), cell(row.least_order, ""));
