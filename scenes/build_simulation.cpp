@@ -1,6 +1,7 @@
 #include "scenes/build_simulation.h"
 
 #include "core/error.h"
+#include "core/geometry/inside.h"
 #include "core/geometry/seeding.h"
 #include "io/mesh_import.h"
 #include "scenes/scene_reader.h"
@@ -196,6 +197,16 @@ double automatic_sound_speed(double expected_speed) {
   return 10.0 * expected_speed;
 }
 
+/// Whether a collider bounds a solid: closed, wound outward, and none of the fluid in it. A closed mesh around fluid is a container, whose
+/// sheet has two sides.
+bool is_solid(const TriangleMesh& mesh, const std::vector<Vec3>& particles) {
+  if (!compute_topology(mesh).closed() || !(compute_volume(mesh) > 0.0)) return false;
+  const Box3 bounds = compute_bounds(mesh);
+  const InsideTest inside(mesh, bounds.extent().maxCoeff() / 100.0);
+  std::vector<Crossing> crossings;
+  return std::none_of(particles.begin(), particles.end(), [&](const Vec3& x) { return inside.contains(x, crossings); });
+}
+
 Obstacle<3> to_obstacle(const ColliderSettings& s) {
   Obstacle<3> obstacle;
   obstacle.response = {s.friction, s.restitution};
@@ -286,6 +297,7 @@ SimulationSetup build_simulation(const Scene& scene) {
       scene_bounds.extend(bounds.upper);
     }
   }
+  for (std::size_t k = 0; k < setup.colliders.size(); ++k) setup.obstacles[k].closed = is_solid(setup.colliders[k], setup.particles.position);
   set_parameters(scene, scene_bounds, setup);
 
   const Box3& domain = setup.parameters.domain;
@@ -304,8 +316,6 @@ Colliders<3> build_colliders(const SimulationSetup& setup) {
     for (const auto& t : mesh.triangles) triangles.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
     Obstacle<3> obstacle = setup.obstacles[k];
     obstacle.facets = std::move(triangles);
-    // Wound inward it bounds no solid that could be filled: what is in it is outside.
-    obstacle.closed = compute_topology(mesh).closed() && compute_volume(mesh) > 0.0;
     colliders.add(std::move(obstacle));
   }
   return colliders;

@@ -61,7 +61,9 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
   check_period<Dim>(parameters_.period, list_reach());
   terms_.relaxed = terms_.pair.stress && parameters_.shear_wave_speed > 0.0;
   terms_.pair.hourglass = terms_.pair.stress && parameters_.hourglass_control > 0.0;
-  terms_.diffusion = parameters_.density_diffusion > 0.0 && parameters_.density == DensityForm::continuity;
+  terms_.diffusion = parameters_.density_diffusion > 0.0;
+  if (terms_.diffusion && parameters_.density != DensityForm::continuity)
+    fail("simulation: density diffusion goes with the continuity equation; a density that is a sum has nothing to diffuse (set it to 0)");
   CHECK_EQ(particles_.temperature.size(), terms_.pair.heat ? n : 0);
   if (terms_.pair.stress) {
     particles_.stress.resize(n, Symmetric<Dim>::Zero());

@@ -88,7 +88,7 @@ void Solver<Dim, Real>::pack_gas(std::size_t i, double dt) {
   force[1] = static_cast<Real>(compute_sound_speed(state, 0.0, 1.0, rho, e));
 }
 
-/// A solid's viscosity would need tiny steps: with a relaxed stress, that of a shear wave over a smoothing length is enough.
+/// A solid's viscosity would need tiny steps: with a relaxed stress, that of a shear wave over a quarter of a smoothing length is enough.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::pack_hourglass(std::size_t i, const Mat<Dim>& velocity_gradient) {
   double eta = particles_.viscosity[i];

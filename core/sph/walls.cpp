@@ -112,15 +112,19 @@ void Walls<Dim>::update_one(const Colliders<Dim>& colliders, const Vec<Dim>& pos
       const FacetIntegrals<Dim> integrals = is_small<Dim>(facet, local, kernel_.smoothing_length())
                                                 ? integrate_small_facet<Dim>(kernel_, facet, normal, local)
                                                 : integrate_facet<Dim>(kernel_, facet, normal, local);
-      if (integrals.area == 0.0) continue;
+      // At the rim of the support rounding may leave next to nothing of either sign.
+      if (!(integrals.area > 0.0)) continue;
       seen.solid += integrals.solid;
       seen.moment += integrals.solid * Mat<Dim>::Identity() - integrals.first * normal.transpose();
 
       // Sums first; the normal is the mean once they are whole.
       constexpr double same_direction = 0.985;
-      const bool in_front = (local - facet[0]).dot(normal) > 0.0;
+      const double plane = (local - facet[0]).dot(normal);
+      const bool in_front = plane > 0.0;
+      const double same_plane = 0.25 * kernel_.smoothing_length();
       WallContact<Dim>* contact = std::find_if(first, last, [&](const WallContact<Dim>& c) {
-        return c.obstacle == o && in_front == (c.distance > 0.0) && c.normal.dot(normal) > same_direction * c.normal.norm();
+        return c.obstacle == o && in_front == (c.distance > 0.0) && c.normal.dot(normal) > same_direction * c.normal.norm() &&
+               std::abs(c.first.dot(normal) / c.area + plane) < same_plane;
       });
       if (contact == last) *last++ = {Vec<Dim>::Zero(), Vec<Dim>::Zero(), in_front ? 1.0 : -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, o};
       contact->normal += integrals.area * normal;

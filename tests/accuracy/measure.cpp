@@ -58,7 +58,7 @@ Norms compute_norms(std::span<const double> differences) {
   for (const double e : differences) {
     norms.l1 += std::abs(e);
     norms.l2 += e * e;
-    if (!(std::abs(e) <= norms.max)) norms.max = std::abs(e);  // a NaN stays one
+    if (!std::isnan(norms.max) && !(std::abs(e) <= norms.max)) norms.max = std::abs(e);  // a NaN stays one
   }
   norms.l1 /= static_cast<double>(differences.size());
   norms.l2 = std::sqrt(norms.l2 / static_cast<double>(differences.size()));

@@ -59,6 +59,7 @@ void report_momentum() {
   auto parameters = make_parameters<Dim>(spacing, 20.0);
   parameters.artificial_viscosity = 0.5;
   parameters.xsph = 0.5;
+  parameters.hourglass_control = 1.0;
   parameters.shear_wave_speed = 20.0;
   Material m = viscoplastic_material(density, 100.0, 50.0, 0.5, 1000.0);
   m.rheology.jump_number = ThermalRange{1000.0, 10.0};

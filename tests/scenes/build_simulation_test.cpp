@@ -82,6 +82,18 @@ TEST(BuildSimulation, CollidersCarryWhatTheSceneSaysOfThem) {
   EXPECT_EQ(view.colliders[0].mesh.vertices[7], at_start[0].mesh.vertices[7]);
 }
 
+TEST(BuildSimulation, AClosedColliderAroundFluidIsAContainer) {
+  Scene scene = bunny_scene({"particles.count=500"});
+  ColliderSettings vessel = scene.colliders[0];
+  vessel.mesh = "assets/bunny.obj";
+  vessel.placement.scale = 0.12;
+  vessel.placement.translate = Vec3(0, -0.05, 0);
+  scene.colliders = {vessel};
+  EXPECT_FALSE(build_colliders(build_simulation(scene)).placed()[0].obstacle.closed);
+  scene.colliders[0].placement.translate = Vec3(5, 0, 0);
+  EXPECT_TRUE(build_colliders(build_simulation(scene)).placed()[0].obstacle.closed);
+}
+
 TEST(BuildSimulation, RefusesABodyUnderTheGround) {
   Scene scene = bunny_scene({"body.0.stand_at_y_m=-0.2"});
   try {

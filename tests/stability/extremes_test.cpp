@@ -23,6 +23,7 @@ SolverParameters<3> all_terms() {
   parameters.shear_wave_speed = 20.0;
   parameters.artificial_viscosity = 0.3;
   parameters.xsph = 0.3;
+  parameters.hourglass_control = 1.0;
   return parameters;
 }
 

@@ -62,7 +62,7 @@ Watched watch(Solver<Dim, Real>& solver, double duration) {
   for (double remaining = duration; remaining > 0.0; ++seen.steps) {
     remaining -= solver.step(remaining, duration - remaining).dt;
     const double gain = (total_energy(solver) - start) / scale;
-    if (!(gain <= seen.energy_gain)) seen.energy_gain = gain;  // a NaN stays one
+    if (!std::isnan(seen.energy_gain) && !(gain <= seen.energy_gain)) seen.energy_gain = gain;  // a NaN stays one
     for (std::size_t i = 0; i < solver.particles().size(); ++i)
       seen.density_error =
           std::max(seen.density_error, std::abs(solver.particles().density[i] / solver.material(i).density - 1.0));
