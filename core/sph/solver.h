@@ -62,8 +62,9 @@ struct SolverTerms {
 template <int Dim, typename Real>
 class Solver {
  public:
-  /// Throws Error where the parameters cannot be (non-positive lengths or densities, a periodic box too short, a viscous
-  /// or heat-conducting ideal gas). The particles of an ideal gas bring their internal energy.
+  /// Throws Error where the parameters cannot be (non-positive lengths or densities, a periodic box too short; an ideal gas that is
+  /// viscous, conducts heat, meets walls or has an adiabatic index of 1 or less; density diffusion of a gas or of a summed density). The
+  /// particles of an ideal gas bring their internal energy.
   Solver(const SolverParameters<Dim>& parameters, std::vector<Material> materials, Colliders<Dim> colliders,
          Particles<Dim> particles);
 
