@@ -2,6 +2,7 @@
 // Meshes for tests, small enough to know everything about.
 
 #include "core/geometry/surface_mesh.h"
+#include "tests/source_folder.h"
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -94,7 +95,7 @@ inline double winding_number(const TriangleMesh& mesh, const Vec3& p) {
 
 /// Vertices and triangles of a plain OBJ file in the source tree, faults and all.
 inline TriangleMesh load_asset(const std::string& name) {
-  std::ifstream file(std::string(SMELT_SOURCE_DIR) + "/assets/" + name);
+  std::ifstream file(source_folder().string() + "/assets/" + name);
   EXPECT_TRUE(file.good()) << name;
   TriangleMesh mesh;
   for (std::string line; std::getline(file, line);) {

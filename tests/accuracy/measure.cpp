@@ -1,6 +1,7 @@
 #include "tests/accuracy/measure.h"
 
 #include "core/error.h"
+#include "tests/source_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -29,7 +30,7 @@ double Reference::at(double x, std::size_t c) const {
 }
 
 Reference read_reference(const std::string& name) {
-  const std::string path = std::string(SMELT_SOURCE_DIR) + "/tests/data/reference/" + name + ".csv";
+  const std::string path = source_folder().string() + "/tests/data/reference/" + name + ".csv";
   std::ifstream file(path);
   Reference reference;
   if (!std::getline(file, reference.header)) fail("{}: cannot be read", path);

@@ -1,6 +1,7 @@
 #include "tests/accuracy/measure.h"
 
 #include "core/error.h"
+#include "tests/source_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +15,7 @@ namespace {
 TEST(Measure, EveryReferenceCanBeRead) {
   int n = 0;
   for (const auto& entry :
-       std::filesystem::directory_iterator(std::string(SMELT_SOURCE_DIR) + "/tests/data/reference")) {
+       std::filesystem::directory_iterator(source_folder().string() + "/tests/data/reference")) {
     if (entry.path().extension() != ".csv") continue;
     ++n;
     EXPECT_NO_THROW(read_reference(entry.path().stem().string())) << entry.path();

@@ -4,6 +4,7 @@
 #include "io/obj.h"
 #include "io/particles_vdb.h"
 #include "io/png.h"
+#include "tests/source_folder.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -293,7 +294,7 @@ TEST_F(CommandLine, CheckAndInfoAnswer) {
   const Result info = run({"info", output("out") + "/particles/particles.0001.vdb"});
   EXPECT_EQ(info.status, 0) << info.err;
   EXPECT_NE(info.out.find("temperature"), std::string::npos) << info.out;
-  const Result mesh = run({"info", std::string(SMELT_SOURCE_DIR) + "/assets/bunny.obj"});
+  const Result mesh = run({"info", source_folder().string() + "/assets/bunny.obj"});
   EXPECT_NE(mesh.out.find("closed     yes"), std::string::npos) << mesh.out;
   EXPECT_NE(mesh.out.find("194.288"), std::string::npos) << mesh.out;
   EXPECT_EQ(run({"info", small_scene()}).status, 3);

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "tests/meshes.h"
+#include "tests/source_folder.h"
 
 #include <algorithm>
 #include <bit>
@@ -16,7 +17,7 @@ std::filesystem::path temporary(const std::string& name) {
 }
 
 std::filesystem::path asset(const std::string& name) {
-  return std::filesystem::path(SMELT_SOURCE_DIR) / "assets" / name;
+  return source_folder() / "assets" / name;
 }
 
 TriangleMesh import_text(const std::string& name, const std::string& text) {

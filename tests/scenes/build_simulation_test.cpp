@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "scenes/build_view.h"
 #include "scenes/scene_reader.h"
+#include "tests/source_folder.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@ namespace smelt {
 namespace {
 
 Scene bunny_scene(const std::vector<std::string>& overrides = {}) {
-  return read_scene(std::filesystem::path(SMELT_SOURCE_DIR) / "scenes/melting_bunny.toml", overrides);
+  return read_scene(source_folder() / "scenes/melting_bunny.toml", overrides);
 }
 
 TEST(BuildSimulation, BunnyHasTheCountAndTheMass) {

@@ -4,6 +4,7 @@
 #include "io/atomic_file.h"
 #include "scenes/nearest_word.h"
 #include "scenes/scene_writer.h"
+#include "tests/source_folder.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -188,13 +189,13 @@ TEST(SceneWriter, SectionsTellWhatChanged) {
 }
 
 TEST(SceneWriter, ReferencePageIsWhatTheCodeSays) {
-  EXPECT_EQ(read_file(std::filesystem::path(SMELT_SOURCE_DIR) / "docs/scene.md"), write_scene_reference())
+  EXPECT_EQ(read_file(source_folder() / "docs/scene.md"), write_scene_reference())
       << "print it anew: ./smelt scene-reference > docs/scene.md";
 }
 
 TEST(SceneReader, EverySceneOfTheProjectIsSound) {
   int n = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(SMELT_SOURCE_DIR) / "scenes")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(source_folder() / "scenes")) {
     if (entry.path().extension() != ".toml") continue;
     EXPECT_NO_THROW(read_scene(entry.path())) << entry.path();
     ++n;
