@@ -31,13 +31,8 @@ void advise_on_sound_speed(const SimulationSetup& setup, Advice& advice) {
 
 void advise_on_relaxed_stress(const SimulationSetup& setup, Advice& advice) {
   const SolverParameters<3>& p = setup.parameters;
-  const double c = p.sound_speed, c_s = p.shear_wave_speed;
+  const double c_s = p.shear_wave_speed;
   if (!(c_s > 0.0)) return;
-  if (c_s > 1.5 * c)
-    advice.push_back(fmt::format(
-        "[solver] shear_wave_speed_m_s = {:.4g} is above 1.5 times the sound speed, {:.4g} m/s: stiffer against shear than against pressure, "
-        "particles chatter; choose at most {:.3g}",
-        c_s, c, c));
   const double g = p.gravity.norm();
   const double height = g > 0.0 ? setup.body_bounds.extent().dot(p.gravity.cwiseAbs()) / g : 0.0;
   const double strain = g * height / (c_s * c_s);

@@ -93,7 +93,7 @@ void visit_collider(SchemaVisitor& v, ColliderSettings& s) {
                      "stops what hits it"},
             s.wall);
   v.vector({"velocity_m_s", "it moves with, from where it is at the start; not of the `ground`"}, s.velocity, any_number);
-  v.vector({"surface_velocity_m_s", "of its surface beyond that, as of a belt that stays where it is"}, s.surface_velocity, any_number);
+  v.vector({"surface_velocity_m_s", "of its surface beyond that, as of a belt that stays where it is; its part along the surface"}, s.surface_velocity, any_number);
   v.number({"temperature_K", "heat passes between it and the fluid at it; only of a `wall`, in a scene with heat", "no heat passes"},
            s.temperature, non_negative);
   v.vector({"colour", "linear RGB in pictures"}, s.colour, unit_interval);

@@ -46,6 +46,13 @@ double Colliders<Dim>::max_speed() const {
 }
 
 template <int Dim>
+double Colliders<Dim>::max_obstacle_speed() const {
+  double speed = 0.0;
+  for (const Placed& p : placed_) speed = std::max(speed, p.obstacle.velocity.norm());
+  return speed;
+}
+
+template <int Dim>
 void Colliders<Dim>::place_at(double time) {
   for (Placed& p : placed_) p.displacement = time * p.obstacle.velocity;
 }
@@ -53,16 +60,17 @@ void Colliders<Dim>::place_at(double time) {
 template <int Dim>
 bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, Vec<Dim>& transport,
                                  Vec<Dim>& velocity) const {
-  // Broad phase, once for the whole step: responses never lengthen the path relative to an obstacle at rest.
+  // Broad phase, once for the whole step. A response never lengthens the path relative to what was hit, and each obstacle comes nearer
+  // by its own speed: twice the fastest, since it may be returned.
+  const double reach = 2.0 * radius + dt * (transport.norm() + 3.0 * max_speed());
   thread_local std::vector<std::uint32_t> found;
   thread_local std::vector<Candidate> candidates;
   candidates.clear();
   for (std::size_t o = 0; o < placed_.size(); ++o) {
     const Placed& placed = placed_[o];
-    const double obstacle_speed = placed.obstacle.velocity.norm() + placed.obstacle.surface_velocity.norm();
     found.clear();
     // Twice the radius: a sphere that starts inside an obstacle is first moved out, by up to its radius.
-    placed.bvh.find_near(position - placed.displacement, 2.0 * radius + dt * (transport.norm() + 2.0 * obstacle_speed), found);
+    placed.bvh.find_near(position - placed.displacement, reach, found);
     for (const std::uint32_t facet : found) candidates.push_back({static_cast<std::uint32_t>(o), facet});
   }
   if (candidates.empty()) {
@@ -83,6 +91,7 @@ bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, V
 
   bool hit = false;
   double elapsed = 0.0;
+  Vec<Dim> carried = Vec<Dim>::Zero();
   for (int bounce = 0; bounce < max_bounces; ++bounce) {
     const double remaining = dt - elapsed;
     std::optional<SweepContact<Dim>> first;
@@ -106,10 +115,12 @@ bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, V
     position += first->time * remaining * transport;
     elapsed += first->time * remaining;
     const Obstacle<Dim>& obstacle = placed_[touched->obstacle].obstacle;
-    const Vec<Dim> surface = obstacle.velocity + obstacle.surface_velocity;
+    const Vec<Dim> surface = obstacle.velocity_at(first->normal);
+    carried = obstacle.velocity;
     transport = surface + respond<Dim>(transport - surface, first->normal, obstacle.response);
     velocity = surface + respond<Dim>(velocity - surface, first->normal, obstacle.response);
   }
+  position += (dt - elapsed) * carried;
   return hit;
 }
 

@@ -23,25 +23,30 @@ struct Obstacle {
   /// The facets bound a solid, wound outward; otherwise they are a sheet, and what lies behind it is solid to either side.
   bool closed = false;
   Vec<Dim> velocity = Vec<Dim>::Zero();          ///< it moves with [m/s]
-  Vec<Dim> surface_velocity = Vec<Dim>::Zero();  ///< of its surface beyond that, as of a belt or a sliding lid [m/s]
+  Vec<Dim> surface_velocity = Vec<Dim>::Zero();  ///< of its surface beyond that, as of a belt or a lid: its part along the surface [m/s]
   std::optional<double> temperature = std::nullopt;  ///< [K]; absent: no heat passes
+
+  /// Of the material at a place of the surface with unit normal `normal` [m/s].
+  Vec<Dim> velocity_at(const Vec<Dim>& normal) const { return velocity + surface_velocity - surface_velocity.dot(normal) * normal; }
 };
 
 /// Obstacles of one scene. Facets are two-sided to a swept particle: it stays on the side it is on.
 template <int Dim>
 class Colliders {
  public:
+  /// Facets without area hold nothing off and are no error.
   void add(Obstacle<Dim> obstacle);
 
   bool empty() const { return placed_.empty(); }
   bool has_walls() const;
-  double max_speed() const;  ///< of the obstacles' motion and surfaces [m/s]
+  double max_speed() const;          ///< of obstacles that move and surfaces that slide [m/s]
+  double max_obstacle_speed() const;  ///< of obstacles that move alone [m/s]
 
   /// Puts obstacles with velocities where they are at `time` [s].
   void place_at(double time);
 
   /// Moves a sphere of radius `radius` [m] for `dt` [s] with `transport` velocity; at each hit the rest of the step goes on with the
-  /// new velocity and may hit again, up to `max_bounces`, after which it stays at the last contact. A sphere that overlaps an
+  /// new velocity and may hit again, up to `max_bounces`, after which it stays at the last contact, carried by that obstacle. A sphere that overlaps an
   /// obstacle at the start is first moved out to touch it. `velocity` [m/s] gets the same answers as `transport`. Obstacles that move
   /// do so meanwhile, from where place_at() put them. A wall holds fluid off by its pressure: there the sphere is but a guard, of
   /// `wall_guard` times the radius. Returns whether anything was hit.

@@ -24,6 +24,7 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   const PairKernel kernel(h);
   constexpr std::size_t lanes = pair_lanes<Real>;
   using Fields = PairFields<Dim, Real>;
+  [[maybe_unused]] const bool conductivity_varies = !fields.conductivity.empty();
   for (std::size_t i = begin; i < end; ++i) {
     auto density_rate = hn::Zero(d);
     auto heat = hn::Zero(d);
@@ -59,7 +60,12 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
       }
       if constexpr (with_heat) {
         const auto t_ij = hn::Sub(hn::Set(d, fields.temperature[i]), load_scalar(fields.temperature, row + k));
-        heat = hn::MulAdd(volume_f, t_ij, heat);
+        auto conducted = hn::Mul(volume_f, t_ij);
+        if (conductivity_varies) {
+          const auto l_j = load_scalar(fields.conductivity, row + k);
+          conducted = hn::Div(hn::Mul(conducted, hn::Add(l_j, l_j)), hn::Add(hn::Set(d, fields.conductivity[i]), l_j));
+        }
+        heat = hn::Add(conducted, heat);
       }
       if constexpr (with_xsph) {
         const auto mass = hn::Mul(pair.volume, pair.density);

@@ -47,6 +47,7 @@ struct PairFields {
   std::vector<Real> motion;       ///< n records of motion_stride
   std::vector<Real> force;        ///< n records of force_stride
   std::vector<Real> temperature;  ///< [K] above a reference
+  std::vector<Real> conductivity;  ///< rho0 k, over c_p [kg/(m s)]; empty where all materials have the same
   std::vector<Real> pressure;     ///< [Pa], for core/sph/pressure_sums.h
 };
 
@@ -56,7 +57,9 @@ struct RateSums {
   Real density_rate;                            ///< sum m_j v_ij . grad_w_ij  [P 4-37]
   std::array<Real, Dim * Dim> velocity_moment;  ///< sum V_j (v_j - v_i) (x) grad_w_ij, row-major (bare velocity gradient)
   std::array<Real, Dim*(Dim + 1) / 2> position_moment;  ///< sum V_j (x_j - x_i) (x) grad_w_ij  [Bonet & Lok 1999]
-  Real heat;                                    ///< 2 sum V_j (T_i - T_j) x_ij.grad_w_ij / r^2, finite at r = 0  [P 6-9, corrected]
+  /// 2 sum V_j (T_i - T_j) x_ij.grad_w_ij / r^2, finite at r = 0  [P 6-9, corrected]; where conductivities l differ, each pair times
+  /// 2 l_j/(l_i + l_j), so that l_i times it has their harmonic mean  [Cleary & Monaghan 1999]
+  Real heat;
   std::array<Real, Dim> xsph;                   ///< sum 2 m_j/(rho_i + rho_j) (v_j - v_i) W_ij  [P 6-16]
 };
 

@@ -54,7 +54,10 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
   terms_.pair.kernel = parameters_.kernel;
   for (const Material& m : materials_) {
     if (!inviscid(m.rheology)) terms_.pair.stress = true;
-    if (m.heat) terms_.pair.heat = true;
+    if (!m.heat) continue;
+    terms_.pair.heat = true;
+    const Material& first = materials_.front();
+    if (first.heat && m.density * m.heat->diffusivity != first.density * first.heat->diffusivity) terms_.conductivity_varies = true;
   }
   terms_.pair.xsph = parameters_.xsph > 0.0;
   for (int a = 0; a < Dim; ++a) terms_.periodic = terms_.periodic || is_periodic(parameters_.period, a);
@@ -86,7 +89,7 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
   if (colliders_.has_walls())
     walls_.emplace(WallKernel<Dim>(parameters_.smoothing_length, parameters_.kernel), std::pow(parameters_.particle_volume, 1.0 / Dim),
                    Colliders<Dim>::wall_guard * particle_radius<Dim>(parameters_.particle_volume));
-  if (walls_ || terms_.diffusion) {
+  if (walls_ || (terms_.diffusion && terms_.pair.stress)) {
     pressure_sums_.resize(n);
     pressure_gradient_.resize(n, Vec<Dim>::Zero());
   }
@@ -186,8 +189,8 @@ void Solver<Dim, Real>::set_summed_densities(bool normalise) {
   parallel_for_each(n, [&](std::size_t i) {
     const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr;
     const double solid = wall ? wall->solid : 0.0;
-    const double mass_sum = density_sums_[i].mass + solid * material(i).density;
-    const double rho = normalise ? mass_sum / (density_sums_[i].volume + solid) : mass_sum;
+    // Of the kernel in the fluid: the solid is taken to hold what the fluid does.
+    const double rho = density_sums_[i].mass / (normalise ? static_cast<double>(density_sums_[i].volume) : 1.0 - solid);
     particles_.density[i] = rho;
     Real* record = fields_.motion.data() + i * Fields::motion_stride;
     record[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
@@ -255,7 +258,7 @@ void Solver<Dim, Real>::integrate_rates(double dt) {
   parallel_for_each(particles_.size(), [&](std::size_t i) {
     const RateSums<Dim, Real>& rate = rates_[i];
     const Material& m = material(i);
-    // rho c_p dT/dt = div(c_p rho0 k grad T): the factor rho0/rho makes the exchange symmetric, so that sum m T is kept.
+    // rho c_p dT/dt = div(c_p rho0 k grad T), one c_p: the factor rho0/rho makes the exchange symmetric, so that sum m T is kept.
     if (m.heat) particles_.temperature[i] += dt * m.heat->diffusivity * m.density / particles_.density[i] * rate.heat;
     Mat<Dim> corrected_stress = Mat<Dim>::Zero();
     if (terms_.pair.stress) corrected_stress = integrate_stress(i, dt);
@@ -351,7 +354,7 @@ void Solver<Dim, Real>::drift(double dt) {
         return (particles_.position[i] - before).norm();
       },
       [](double a, double b) { return std::max(a, b); });
-  travelled_ += farthest + dt * colliders_.max_speed();
+  travelled_ += farthest + dt * colliders_.max_obstacle_speed();
 }
 
 template class Solver<3, float>;

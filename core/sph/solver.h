@@ -55,6 +55,7 @@ struct SolverTerms {
   bool periodic = false;  ///< some axis repeats
   bool gas = false;       ///< an ideal gas: particles carry internal energy
   bool diffusion = false;  ///< density diffusion
+  bool conductivity_varies = false;  ///< between materials
 };
 
 /// Advances particles in time by leap-frog (kick-drift-kick). Real (float or double) is what the pair loops compute in; the state is

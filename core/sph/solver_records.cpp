@@ -13,6 +13,7 @@ void Solver<Dim, Real>::pack_motion(const std::vector<Vec<Dim>>& velocity) {
   const std::size_t n_records = n + images_.size();
   fields_.motion.resize(n_records * Fields::motion_stride);
   if (terms_.pair.heat) fields_.temperature.resize(n_records);
+  if (terms_.conductivity_varies) fields_.conductivity.resize(n_records);
   const bool with_pressure = walls_ || terms_.diffusion;
   if (with_pressure) fields_.pressure.resize(n_records);
   const double reference = materials_.front().heat ? materials_.front().heat->cold : 0.0;
@@ -25,6 +26,8 @@ void Solver<Dim, Real>::pack_motion(const std::vector<Vec<Dim>>& velocity) {
     record[Fields::density_at] = static_cast<Real>(particles_.density[i]);
     // Relative to the melting range, where single precision is needed most.
     if (terms_.pair.heat) fields_.temperature[i] = static_cast<Real>(particles_.temperature[i] - reference);
+    if (terms_.conductivity_varies)
+      fields_.conductivity[i] = static_cast<Real>(material(i).density * material(i).heat->diffusivity);
     if (with_pressure) fields_.pressure[i] = static_cast<Real>(pressure(i));
   });
   copy_motion_to_images();
@@ -42,6 +45,7 @@ void Solver<Dim, Real>::copy_motion_to_images() {
     const Vec<Dim> x = particles_.position[source] + images_.shift[k] - origin_;
     for (int a = 0; a < Dim; ++a) record[a] = static_cast<Real>(x[a]);
     if (terms_.pair.heat) fields_.temperature[n + k] = fields_.temperature[source];
+    if (terms_.conductivity_varies) fields_.conductivity[n + k] = fields_.conductivity[source];
     if (!fields_.pressure.empty()) fields_.pressure[n + k] = fields_.pressure[source];
   });
 }

@@ -28,7 +28,7 @@ void accumulate_wall_rates(const WallNeighbour<Dim>& wall, const Colliders<Dim>&
   Mat<Dim> velocity_moment = Mat<Dim>::Zero();
   for (const WallContact<Dim>& contact : wall.contacts) {
     const Obstacle<Dim>& obstacle = colliders.placed()[contact.obstacle].obstacle;
-    const Vec<Dim> relative = v - obstacle.velocity - obstacle.surface_velocity;
+    const Vec<Dim> relative = v - obstacle.velocity_at(contact.normal);
     density_rate -= rho * contact.push * relative.dot(contact.normal);
     velocity_moment += contact.stretch * held_by_wall<Dim>(relative, contact.normal, obstacle.response) * contact.normal.transpose();
     if (terms.heat && obstacle.temperature) heat -= 2.0 * (temperature - *obstacle.temperature) * contact.conductance;

@@ -4,6 +4,7 @@
 #include "core/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -83,22 +84,33 @@ void Walls<Dim>::find(const Colliders<Dim>& colliders, std::span<const Vec<Dim>>
       begin_.push_back(begin_.back() + block.n_candidates[k]);
     }
   }
-  contacts_.resize(candidates_.size());
 }
 
 template <int Dim>
 void Walls<Dim>::update(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position) {
-  parallel_for_each(neighbours_.size(),
-                    [&](std::size_t slot) { update_one(colliders, position[static_cast<std::size_t>(neighbours_[slot].particle)], slot); });
+  const std::size_t n_blocks = (neighbours_.size() + block_size - 1) / block_size;
+  contacts_.resize(n_blocks);
+  parallel_blocks(n_blocks, [&](std::size_t block, std::size_t) {
+    std::vector<WallContact<Dim>>& contacts = contacts_[block];
+    contacts.clear();
+    const std::size_t begin = block * block_size, end = std::min(neighbours_.size(), begin + block_size);
+    std::array<std::size_t, block_size + 1> first{};
+    for (std::size_t slot = begin; slot < end; ++slot) {
+      append_contacts(colliders, position[static_cast<std::size_t>(neighbours_[slot].particle)], slot, contacts);
+      first[slot - begin + 1] = contacts.size();
+    }
+    for (std::size_t slot = begin; slot < end; ++slot)
+      neighbours_[slot].contacts = {contacts.data() + first[slot - begin], first[slot - begin + 1] - first[slot - begin]};
+  }, 1);
 }
 
 template <int Dim>
-void Walls<Dim>::update_one(const Colliders<Dim>& colliders, const Vec<Dim>& position, std::size_t slot) {
+void Walls<Dim>::append_contacts(const Colliders<Dim>& colliders, const Vec<Dim>& position, std::size_t slot,
+                                 std::vector<WallContact<Dim>>& contacts) {
   WallNeighbour<Dim>& seen = neighbours_[slot];
   seen.solid = 0.0;
   seen.moment.setZero();
-  WallContact<Dim>* const first = contacts_.data() + begin_[slot];
-  WallContact<Dim>* last = first;
+  const auto own = static_cast<std::ptrdiff_t>(contacts.size());
   const std::span<const Candidate> candidates{candidates_.data() + begin_[slot], begin_[slot + 1] - begin_[slot]};
   for (std::size_t begin = 0, end = 0; begin < candidates.size(); begin = end) {
     const std::uint32_t o = candidates[begin].obstacle;
@@ -122,11 +134,14 @@ void Walls<Dim>::update_one(const Colliders<Dim>& colliders, const Vec<Dim>& pos
       const double plane = (local - facet[0]).dot(normal);
       const bool in_front = plane > 0.0;
       const double same_plane = 0.25 * kernel_.smoothing_length();
-      WallContact<Dim>* contact = std::find_if(first, last, [&](const WallContact<Dim>& c) {
+      auto contact = std::find_if(contacts.begin() + own, contacts.end(), [&](const WallContact<Dim>& c) {
         return c.obstacle == o && in_front == (c.distance > 0.0) && c.normal.dot(normal) > same_direction * c.normal.norm() &&
                std::abs(c.first.dot(normal) / c.area + plane) < same_plane;
       });
-      if (contact == last) *last++ = {Vec<Dim>::Zero(), Vec<Dim>::Zero(), in_front ? 1.0 : -1.0, 0.0, 0.0, 0.0, 0.0, 0.0, o};
+      if (contact == contacts.end()) {
+        const double unset = in_front ? 1.0 : -1.0;
+        contact = contacts.insert(contact, {Vec<Dim>::Zero(), Vec<Dim>::Zero(), unset, 0.0, 0.0, 0.0, 0.0, 0.0, o});
+      }
       contact->normal += integrals.area * normal;
       contact->first += integrals.first;
       contact->area += integrals.area;
@@ -134,7 +149,7 @@ void Walls<Dim>::update_one(const Colliders<Dim>& colliders, const Vec<Dim>& pos
     }
   }
   seen.moment = 0.5 * (seen.moment + seen.moment.transpose()).eval();
-  for (WallContact<Dim>* contact = first; contact != last; ++contact) {
+  for (auto contact = contacts.begin() + own; contact != contacts.end(); ++contact) {
     const double facets_area = contact->area;
     contact->area = contact->normal.norm();
     contact->normal /= contact->area;
@@ -146,7 +161,6 @@ void Walls<Dim>::update_one(const Colliders<Dim>& colliders, const Vec<Dim>& pos
     contact->push = 2.0 * contact->area * std::max(1.0, 0.5 * spacing_ / distance);
     contact->conductance = contact->area / distance;
   }
-  seen.contacts = {first, last};
 }
 
 template class Walls<1>;

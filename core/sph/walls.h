@@ -65,16 +65,17 @@ class Walls {
     std::uint32_t obstacle;
     std::uint32_t facet;
   };
-  void update_one(const Colliders<Dim>& colliders, const Vec<Dim>& position, std::size_t slot);
+  void append_contacts(const Colliders<Dim>& colliders, const Vec<Dim>& position, std::size_t slot,
+                       std::vector<WallContact<Dim>>& contacts);
 
   WallKernel<Dim> kernel_;
   double spacing_;
   double least_distance_;
   std::vector<std::int32_t> slot_;  ///< of each particle among neighbours_, or -1
   std::vector<WallNeighbour<Dim>> neighbours_;
-  std::vector<std::size_t> begin_;  ///< of each neighbour's candidates, and of its contacts
+  std::vector<std::size_t> begin_;  ///< of each neighbour's candidates
   std::vector<Candidate> candidates_;
-  std::vector<WallContact<Dim>> contacts_;
+  std::vector<std::vector<WallContact<Dim>>> contacts_;  ///< of blocks of neighbours: far fewer than candidates on a fine mesh
 };
 
 }  // namespace smelt

@@ -98,7 +98,7 @@ void measure_pressure(const Solver<2, double>& solver, const Pool& pool, Seen& s
       const Vec<2> point = pool.wall[k - 1] + i * step;
       if (point.dot(pool.up) > pool.level - 2.0 * spacing) continue;
       const double error = std::abs(gauge_excess(solver, pool.level, point)) / scale;
-      if (!(error <= seen.gauge)) seen.gauge = error;
+      if (!std::isnan(seen.gauge) && !(error <= seen.gauge)) seen.gauge = error;  // a NaN, of a dry gauge, stays one
     }
   }
   const auto& p = solver.particles();
