@@ -32,7 +32,7 @@ std::string included_folder(const std::string& line) {
 TEST(Layering, IncludesPointOneWay) {
   int n_files = 0, n_checked = 0;
   for (const auto& [folder, allowed] : allowed_includes) {
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(source_folder() / folder)) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(smelt::source_folder() / folder)) {
       const auto extension = entry.path().extension();
       if (extension != ".h" && extension != ".cpp") continue;
       ++n_files;
@@ -53,7 +53,7 @@ TEST(Layering, IncludesPointOneWay) {
 
 TEST(Layering, CoreOpensNoFileAndPrintsNothing) {
   const std::set<std::string> banned = {"<fstream>", "<iostream>", "<cstdio>", "<chrono>", "<filesystem>"};
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(source_folder() / "core")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(smelt::source_folder() / "core")) {
     if (!entry.is_regular_file()) continue;
     std::ifstream file(entry.path());
     for (std::string line; std::getline(file, line);)
@@ -64,7 +64,7 @@ TEST(Layering, CoreOpensNoFileAndPrintsNothing) {
 TEST(Layering, OpenVdbInputAndOutputStayInIo) {
   for (const auto& [folder, allowed] : allowed_includes) {
     if (folder == "io") continue;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(source_folder() / folder)) {
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(smelt::source_folder() / folder)) {
       if (!entry.is_regular_file()) continue;
       std::ifstream file(entry.path());
       for (std::string line; std::getline(file, line);)
