@@ -4,13 +4,11 @@
 #include "core/geometry/inside.h"
 #include "core/geometry/seeding.h"
 #include "io/mesh_import.h"
+#include "scenes/collider_motion.h"
 #include "scenes/scene_reader.h"
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace smelt {
 
@@ -30,10 +28,7 @@ void place(TriangleMesh& mesh, const PlacementSettings& s) {
     if (!(bounds.extent()[1] > 0.0)) fail("height_m cannot scale a mesh that is flat along y");
     scale = *s.height / bounds.extent()[1];
   }
-  const Vec3 angles = s.rotate_deg * (std::numbers::pi / 180.0);
-  const Mat3 rotation = (Eigen::AngleAxisd(angles[2], Vec3::UnitZ()) * Eigen::AngleAxisd(angles[1], Vec3::UnitY()) *
-                         Eigen::AngleAxisd(angles[0], Vec3::UnitX()))
-                            .toRotationMatrix();
+  const Mat3 rotation = rotation_from_degrees(s.rotate_deg);
   for (Vec3& x : mesh.vertices) x = rotation * (scale * x) + s.translate;
   if (s.stand_at_y) {
     const double drop = *s.stand_at_y - compute_bounds(mesh).lower[1];
@@ -179,14 +174,19 @@ DensityForm to_density_form(const std::string& name) {
   return name == "normalised_summation" ? DensityForm::normalised_summation : DensityForm::continuity;
 }
 
-/// v_e = sqrt(2 g H) and the fastest start.
-double compute_expected_speed(const Scene& scene, const Box3& scene_bounds) {
+/// v_e = sqrt(2 g H) and the fastest start, or the fastest collider.
+double compute_expected_speed(const Scene& scene, const Box3& scene_bounds, const SimulationSetup& setup) {
   // H: how far anything can fall, over the whole scene along gravity.
   const double g = scene.gravity.norm();
   const double height = g > 0.0 ? scene_bounds.extent().dot(scene.gravity.cwiseAbs()) / g : 0.0;
   double start = 0.0;
   for (const BodySettings& body : scene.bodies) start = std::max(start, body.velocity.norm());
-  for (const ColliderSettings& c : scene.colliders) start = std::max(start, c.velocity.norm() + c.surface_velocity.norm());
+  for (std::size_t k = 0; k < setup.obstacles.size(); ++k) {
+    const Motion<3>& motion = setup.obstacles[k].motion;
+    double reach = 0.0;
+    for (const Vec3& x : setup.colliders[k].vertices) reach = std::max(reach, (x - motion.pivot).norm());
+    start = std::max(start, speed_bound(motion, 0.0, scene.shot.frames / scene.shot.fps, reach) + setup.obstacles[k].surface_velocity.norm());
+  }
   return std::sqrt(2.0 * g * height) + start;
 }
 
@@ -207,11 +207,11 @@ bool is_solid(const TriangleMesh& mesh, const std::vector<Vec3>& particles) {
   return std::none_of(particles.begin(), particles.end(), [&](const Vec3& x) { return inside.contains(x, crossings); });
 }
 
-Obstacle<3> to_obstacle(const ColliderSettings& s) {
+Obstacle<3> to_obstacle(const ColliderSettings& s, const TriangleMesh& mesh) {
   Obstacle<3> obstacle;
   obstacle.response = {s.friction, s.restitution};
   obstacle.wall = s.wall;
-  obstacle.velocity = s.velocity;
+  obstacle.motion = to_motion(s, mesh);
   obstacle.surface_velocity = s.surface_velocity;
   obstacle.temperature = s.temperature;
   return obstacle;
@@ -223,7 +223,7 @@ void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetu
   setup.spacing = std::cbrt(p.particle_volume);
   p.smoothing_length = scene.particles.smoothing_length_over_spacing * setup.spacing;
   p.gravity = scene.gravity;
-  setup.expected_speed = compute_expected_speed(scene, scene_bounds);
+  setup.expected_speed = compute_expected_speed(scene, scene_bounds, setup);
   p.sound_speed = scene.solver.sound_speed ? *scene.solver.sound_speed : automatic_sound_speed(setup.expected_speed);
   const bool viscoplastic = std::any_of(scene.materials.begin(), scene.materials.end(),
                                         [](const MaterialSettings& m) { return m.viscosity.law == "smd"; });
@@ -286,18 +286,22 @@ SimulationSetup build_simulation(const Scene& scene) {
 
   Box3 scene_bounds = setup.body_bounds;
   for (const ColliderSettings& collider : scene.colliders) {
-    setup.obstacles.push_back(to_obstacle(collider));
     if (collider.mesh == "ground") {
       scene_bounds.extend(Vec3(setup.body_bounds.centre()[0], collider.ground_height, setup.body_bounds.centre()[2]));
       setup.colliders.emplace_back();
     } else {
       setup.colliders.push_back(import_placed_collider(scene, collider));
-      const Box3 bounds = compute_bounds(setup.colliders.back());
-      scene_bounds.extend(bounds.lower);
-      scene_bounds.extend(bounds.upper);
     }
+    const TriangleMesh& mesh = setup.colliders.back();
+    setup.obstacles.push_back(to_obstacle(collider, mesh));
+    const Motion<3>& motion = setup.obstacles.back().motion;
+    const TriangleMesh at_start = motion.still() ? mesh : moved(mesh, pose_at(motion, 0.0));
+    setup.obstacles.back().closed = is_solid(at_start, setup.particles.position);
+    for (const Vec3& x : at_start.vertices) scene_bounds.extend(x);
+    // The places that it is taken to.
+    for (const Keyframe<3>& key : motion.keyframes)
+      for (const Vec3& x : moved(mesh, pose_at(motion, key.time)).vertices) scene_bounds.extend(x);
   }
-  for (std::size_t k = 0; k < setup.colliders.size(); ++k) setup.obstacles[k].closed = is_solid(setup.colliders[k], setup.particles.position);
   set_parameters(scene, scene_bounds, setup);
 
   const Box3& domain = setup.parameters.domain;

@@ -1,6 +1,7 @@
 #include "scenes/build_view.h"
 
 #include "scenes/build_simulation.h"
+#include "scenes/collider_motion.h"
 
 #include <algorithm>
 
@@ -63,14 +64,14 @@ RenderScene build_view(const Scene& scene) {
   return view;
 }
 
-void place_colliders(const Scene& scene, double time, const std::vector<ColliderView>& at_start, RenderScene& view) {
+void place_colliders(const Scene& scene, double time, const std::vector<ColliderView>& at_rest, RenderScene& view) {
   std::size_t drawn = 0;
   for (const ColliderSettings& collider : scene.colliders) {
     if (collider.mesh == "ground") continue;
     const std::size_t k = drawn++;
-    if (collider.velocity.isZero()) continue;
-    view.colliders[k] = at_start[k];
-    for (Vec3& x : view.colliders[k].mesh.vertices) x += time * collider.velocity;
+    const Motion<3> motion = to_motion(collider, at_rest[k].mesh);
+    if (motion.still()) continue;
+    view.colliders[k].mesh = moved(at_rest[k].mesh, pose_at(motion, time));
   }
 }
 

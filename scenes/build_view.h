@@ -9,7 +9,7 @@ namespace smelt {
 /// Camera, lights, look, ground and colliders; what the scene leaves out is chosen to show its bodies well.
 RenderScene build_view(const Scene& scene);
 
-/// Moves the colliders of a view that build_view() made to where they are at `time` [s]; `at_start`: the meshes it gave them.
-void place_colliders(const Scene& scene, double time, const std::vector<ColliderView>& at_start, RenderScene& view);
+/// Moves the colliders of a view that build_view() made to where they are at `time` [s]; `at_rest`: the meshes it gave them.
+void place_colliders(const Scene& scene, double time, const std::vector<ColliderView>& at_rest, RenderScene& view);
 
 }  // namespace smelt

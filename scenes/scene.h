@@ -101,6 +101,13 @@ struct BodySettings {
   std::optional<VerticalRange> temperature;
 };
 
+/// Where a collider is at one time, from where its placement puts it.
+struct KeyframeSettings {
+  double time = 0.0;
+  Vec3 translate = Vec3::Zero();
+  Vec3 rotate_deg = Vec3::Zero();
+};
+
 struct ColliderSettings {
   std::string mesh;
   PlacementSettings placement;
@@ -109,6 +116,10 @@ struct ColliderSettings {
   double restitution = 0.0;
   bool wall = true;
   Vec3 velocity = Vec3::Zero();
+  Vec3 angular_velocity = Vec3::Zero();
+  std::optional<Vec3> pivot;
+  std::string interpolation = "linear";
+  std::vector<KeyframeSettings> keyframes;
   Vec3 surface_velocity = Vec3::Zero();
   std::optional<double> temperature;
   Vec3 colour{0.35, 0.36, 0.38};

@@ -113,9 +113,36 @@ void validate_bodies(const Scene& scene, SceneErrors& errors) {
   }
 }
 
+void validate_keyframes(const ColliderSettings& s, const std::string& path, SceneErrors& errors) {
+  if (s.keyframes.empty()) return;
+  if (s.keyframes.size() == 1)
+    errors.add(path + ".keyframes", "one keyframe moves nothing: give two or more, or place the collider with translate_m and rotate_deg");
+  if (!s.velocity.isZero(0.0)) errors.add(path + ".velocity_m_s", "give keyframes or a velocity, not both");
+  if (!s.angular_velocity.isZero(0.0)) errors.add(path + ".angular_velocity_rad_s", "give keyframes or an angular velocity, not both");
+  for (std::size_t k = 1; k < s.keyframes.size(); ++k) {
+    const KeyframeSettings &before = s.keyframes[k - 1], &key = s.keyframes[k];
+    const std::string here = fmt::format("{}.keyframes.{}", path, k);
+    if (!(key.time > before.time))
+      errors.add(here + ".time_s", fmt::format("must be later than the keyframe before, at {} s, is {}; put the keyframes in order", before.time,
+                                               key.time));
+    const double turn = (key.rotate_deg - before.rotate_deg).cwiseAbs().maxCoeff();
+    if (turn >= 180.0)
+      errors.add(here + ".rotate_deg", fmt::format("turns by {} degrees from the keyframe before, and half a turn or more may go either way: put "
+                                                   "keyframes in between, or use angular_velocity_rad_s",
+                                                   turn));
+  }
+}
+
 void validate_collider(const ColliderSettings& s, bool hot, const std::string& path, SceneErrors& errors) {
-  if (s.mesh == "ground" && !s.velocity.isZero())
-    errors.add(path + ".velocity_m_s", "the ground has no end and cannot move; its surface may (surface_velocity_m_s), or a mesh");
+  if (s.mesh == "ground") {
+    const auto refuse = [&](bool given, const char* key) {
+      if (given) errors.add(path + key, "the ground has no end and cannot move; its surface may (surface_velocity_m_s), or a mesh");
+    };
+    refuse(!s.velocity.isZero(0.0), ".velocity_m_s");
+    refuse(!s.angular_velocity.isZero(0.0), ".angular_velocity_rad_s");
+    refuse(!s.keyframes.empty(), ".keyframes");
+  }
+  validate_keyframes(s, path, errors);
   if (s.temperature && !hot) errors.add(path + ".temperature_K", "no material has heat; give it one, or leave this out");
   if (s.temperature && !s.wall) errors.add(path + ".temperature_K", "heat passes through walls only; set wall = true, or leave this out");
 }

@@ -1,19 +1,141 @@
 #include "core/sph/collision.h"
 
-#include "core/error.h"
-
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 namespace smelt {
 
 namespace {
 
-/// A facet in reach of a step, and the obstacle it belongs to.
-struct Candidate {
-  std::uint32_t obstacle;
-  std::uint32_t facet;
+template <int Dim>
+using Obstacles = std::vector<PlacedObstacle<Dim>>;
+
+/// The facets near a sphere: those of one obstacle are facets [begin, end).
+struct Nearby {
+  struct Group {
+    std::uint32_t obstacle;
+    std::size_t begin, end;
+  };
+  std::vector<Group> groups;
+  std::vector<std::uint32_t> facets;
 };
+
+/// A sphere on its way through a step.
+template <int Dim>
+struct Moving {
+  Vec<Dim> position;
+  Vec<Dim> transport;
+  Vec<Dim> velocity;
+  double share = 0.0;                            ///< of the step that is over
+  const PlacedObstacle<Dim>* carrier = nullptr;  ///< what it touched last: it goes straight in that frame
+  Vec<Dim> relative = Vec<Dim>::Zero();          ///< transport less the carrier's motion there [m/s]: exactly 0 for what sticks
+};
+
+/// The way to where it would be at the end of a leg if it hit nothing.
+template <int Dim>
+struct Way {
+  Vec<Dim> goal;
+  Vec<Dim> in_carrier;  ///< in the carrier's frame, where there is one
+};
+
+/// What it meets first, or nothing.
+template <int Dim>
+struct FirstHit {
+  const PlacedObstacle<Dim>* touched = nullptr;
+  double time = 0.0;                   ///< share of the way
+  Vec<Dim> normal = Vec<Dim>::Zero();  ///< like the next, in the obstacle's own frame
+  Vec<Dim> place = Vec<Dim>::Zero();   ///< of the centre [m]
+};
+
+template <int Dim>
+double radius_at(const PlacedObstacle<Dim>& placed, double radius) {
+  return (placed.obstacle.wall ? Colliders<Dim>::wall_guard : 1.0) * radius;
+}
+
+/// Broad phase, once for the whole step.
+template <int Dim>
+void find_near(const Obstacles<Dim>& placed, const Vec<Dim>& position, double reach, Nearby& near) {
+  near.groups.clear();
+  near.facets.clear();
+  for (std::uint32_t o = 0; o < placed.size(); ++o) {
+    const std::size_t before = near.facets.size();
+    placed[o].bvh.find_near(placed[o].begin.to_rest(position), reach, near.facets);
+    if (near.facets.size() != before) near.groups.push_back({o, before, near.facets.size()});
+  }
+}
+
+/// Moves a sphere out of what it overlaps.
+template <int Dim>
+void push_out(const Obstacles<Dim>& obstacles, const Nearby& near, double radius, Vec<Dim>& position) {
+  for (const auto& group : near.groups) {
+    const PlacedObstacle<Dim>& placed = obstacles[group.obstacle];
+    const double least = radius_at(placed, radius);
+    Vec<Dim> local = placed.begin.to_rest(position);
+    bool moved = false;
+    for (std::size_t k = group.begin; k < group.end; ++k) {
+      const Vec<Dim> out = local - closest_point<Dim>(local, placed.bvh.simplices()[near.facets[k]]);
+      const double distance = out.norm();
+      if (!(distance > 0.0 && distance < least)) continue;
+      local += (least - distance) / distance * out;
+      moved = true;
+    }
+    if (moved) position = placed.begin.to_world(local);
+  }
+}
+
+/// Into how many equal legs the step is cut: over a turn by a, the chord leaves an arc of radius R by R a^2/8.
+template <int Dim>
+int count_legs(const Obstacles<Dim>& obstacles, const Nearby& near, double radius) {
+  double legs = 1.0;
+  for (const auto& group : near.groups) {
+    const PlacedObstacle<Dim>& placed = obstacles[group.obstacle];
+    if (!placed.turning()) continue;
+    legs = std::max(legs, std::ceil(skew_angle<Dim>(placed.turn) * std::sqrt((placed.reach + radius) / (0.8 * radius_at(placed, radius)))));
+  }
+  return static_cast<int>(legs);
+}
+
+template <int Dim>
+Way<Dim> find_way(const Moving<Dim>& m, double leg_end, double dt) {
+  const double duration = (leg_end - m.share) * dt;
+  if (!m.carrier) return {m.position + duration * m.transport, Vec<Dim>::Zero()};
+  const Pose<Dim> from = m.carrier->pose(m.share), to = m.carrier->pose(leg_end);
+  const Vec<Dim> in_carrier = duration * (from.rotation.transpose() * m.relative);
+  return {to.to_world(from.to_rest(m.position) + in_carrier), in_carrier};
+}
+
+/// Each obstacle sees the way in its own frame.
+template <int Dim>
+FirstHit<Dim> find_first_hit(const Obstacles<Dim>& obstacles, const Nearby& near, double radius, const Moving<Dim>& sphere,
+                             const Way<Dim>& straight, double leg_end) {
+  FirstHit<Dim> first;
+  for (const auto& group : near.groups) {
+    const PlacedObstacle<Dim>& placed = obstacles[group.obstacle];
+    const Vec<Dim> from = placed.pose(sphere.share).to_rest(sphere.position);
+    const Vec<Dim> way = &placed == sphere.carrier ? straight.in_carrier : Vec<Dim>(placed.pose(leg_end).to_rest(straight.goal) - from);
+    for (std::size_t k = group.begin; k < group.end; ++k) {
+      const auto contact = sweep_sphere<Dim>(from, way, radius_at(placed, radius), placed.bvh.simplices()[near.facets[k]]);
+      if (contact && (!first.touched || contact->time < first.time))
+        first = {&placed, contact->time, contact->normal, from + contact->time * way};
+    }
+  }
+  return first;
+}
+
+/// Goes there; what goes with an obstacle that turns, turns with it.
+template <int Dim>
+void arrive(Moving<Dim>& m, const Vec<Dim>& position, double share) {
+  if (m.carrier && m.carrier->turning()) {
+    const Mat<Dim> turn = rotation_of<Dim>((share - m.share) * m.carrier->turn);
+    const Vec<Dim>& with = m.carrier->twist.velocity;
+    m.transport = with + turn * (m.transport - with);
+    m.velocity = with + turn * (m.velocity - with);
+    m.relative = turn * m.relative;
+  }
+  m.position = position;
+  m.share = share;
+}
 
 /// The velocity after a hit; `velocity` is relative to the obstacle's surface.
 template <int Dim>
@@ -24,13 +146,43 @@ Vec<Dim> respond(const Vec<Dim>& velocity, const Vec<Dim>& normal, const Contact
   return response.friction * tangential + (normal_speed < 0.0 ? -response.restitution : 1.0) * normal_speed * normal;
 }
 
+/// The sphere answers what it hit, and goes on in that frame.
+template <int Dim>
+void bounce(Moving<Dim>& m, const FirstHit<Dim>& hit) {
+  const PlacedObstacle<Dim>& touched = *hit.touched;
+  const Pose<Dim> pose = touched.pose(m.share);
+  const Vec<Dim> normal = pose.rotation * hit.normal;
+  // The twist is told about where the pivot ends.
+  const Vec<Dim> place = m.position - pose.to_world(touched.pivot) + touched.twist.centre;
+  const Vec<Dim> motion = touched.twist.at(place), slide = touched.velocity_at(place, normal) - motion;
+  m.relative = slide + respond<Dim>(m.transport - motion - slide, normal, touched.obstacle.response);
+  m.transport = motion + m.relative;
+  m.velocity = motion + slide + respond<Dim>(m.velocity - motion - slide, normal, touched.obstacle.response);
+  m.carrier = &touched;
+}
+
 }  // namespace
 
 template <int Dim>
+Pose<Dim> PlacedObstacle<Dim>::pose(double s) const {
+  if (s <= 0.0) return begin;
+  if (s >= 1.0) return end;
+  Pose<Dim> between;
+  between.rotation = turning() ? Mat<Dim>(rotation_of<Dim>(s * turn) * begin.rotation) : begin.rotation;
+  between.translation = (1.0 - s) * begin.to_world(pivot) + s * end.to_world(pivot) - between.rotation * pivot;
+  return between;
+}
+
+template <int Dim>
 void Colliders<Dim>::add(Obstacle<Dim> obstacle) {
-  std::vector<Simplex<Dim>> facets = std::move(obstacle.facets);
+  SimplexBvh<Dim> bvh(std::move(obstacle.facets));
   obstacle.facets.clear();
-  placed_.push_back({std::move(obstacle), SimplexBvh<Dim>(std::move(facets))});
+  Placed placed{std::move(obstacle), std::move(bvh), {}, 0.0, {}, {}, Mat<Dim>::Zero(), {}, {}};
+  placed.pivot = placed.obstacle.motion.pivot;
+  for (const auto& facet : placed.bvh.simplices())
+    for (const Vec<Dim>& corner : facet) placed.reach = std::max(placed.reach, (corner - placed.pivot).norm());
+  max_slide_ = std::max(max_slide_, placed.obstacle.surface_velocity.norm());
+  placed_.push_back(std::move(placed));
 }
 
 template <int Dim>
@@ -39,91 +191,94 @@ bool Colliders<Dim>::has_walls() const {
 }
 
 template <int Dim>
-double Colliders<Dim>::max_speed() const {
+double Colliders<Dim>::speed_bound(double begin, double end) const {
   double speed = 0.0;
-  for (const Placed& p : placed_) speed = std::max(speed, p.obstacle.velocity.norm() + p.obstacle.surface_velocity.norm());
-  return speed;
-}
-
-template <int Dim>
-double Colliders<Dim>::max_obstacle_speed() const {
-  double speed = 0.0;
-  for (const Placed& p : placed_) speed = std::max(speed, p.obstacle.velocity.norm());
+  for (const Placed& p : placed_)
+    speed = std::max(speed, smelt::speed_bound<Dim>(p.obstacle.motion, begin, end, p.reach) + p.obstacle.surface_velocity.norm());
   return speed;
 }
 
 template <int Dim>
 void Colliders<Dim>::place_at(double time) {
-  for (Placed& p : placed_) p.displacement = time * p.obstacle.velocity;
+  for (Placed& p : placed_) {
+    if (p.obstacle.motion.still()) continue;
+    p.begin = p.end = pose_at(p.obstacle.motion, time);
+    p.turn.setZero();
+    p.twist = twist_at(p.obstacle.motion, time);
+    p.acceleration = acceleration_at(p.obstacle.motion, time);
+  }
+  step_way_ = 0.0;
 }
 
 template <int Dim>
-bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, Vec<Dim>& transport,
-                                 Vec<Dim>& velocity) const {
-  // Broad phase, once for the whole step. A response never lengthens the path relative to what was hit, and each obstacle comes nearer
-  // by its own speed: twice the fastest, since it may be returned.
-  const double reach = 2.0 * radius + dt * (transport.norm() + 3.0 * max_speed());
-  thread_local std::vector<std::uint32_t> found;
-  thread_local std::vector<Candidate> candidates;
-  candidates.clear();
-  for (std::size_t o = 0; o < placed_.size(); ++o) {
-    const Placed& placed = placed_[o];
-    found.clear();
-    // Twice the radius: a sphere that starts inside an obstacle is first moved out, by up to its radius.
-    placed.bvh.find_near(position - placed.displacement, reach, found);
-    for (const std::uint32_t facet : found) candidates.push_back({static_cast<std::uint32_t>(o), facet});
+void Colliders<Dim>::begin_step(double time, double dt) {
+  step_way_ = 0.0;
+  for (Placed& p : placed_) {
+    if (p.obstacle.motion.still()) continue;
+    p.end = pose_at(p.obstacle.motion, time + dt);
+    // A spin may go round more than half a turn.
+    if (!p.obstacle.motion.spin.isZero(0.0))
+      p.turn = dt * p.obstacle.motion.spin;
+    else if (p.obstacle.motion.turns())
+      p.turn = skew_of<Dim>(p.end.rotation * p.begin.rotation.transpose());
+    const Vec<Dim> from = p.begin.to_world(p.pivot), to = p.end.to_world(p.pivot);
+    p.twist = {(to - from) / dt, to, p.turn / dt};
+    p.acceleration = acceleration_at(p.obstacle.motion, time + dt);
+    step_way_ = std::max(step_way_, (to - from).norm() + p.reach * skew_angle<Dim>(p.turn));
   }
-  if (candidates.empty()) {
+}
+
+template <int Dim>
+void Colliders<Dim>::end_step() {
+  for (Placed& p : placed_) {
+    p.begin = p.end;
+    p.turn.setZero();
+  }
+}
+
+template <int Dim>
+bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, Vec<Dim>& transport, Vec<Dim>& velocity) const {
+  // A response never lengthens the path relative to what was hit, and each obstacle comes nearer by its own way: twice the longest, since it
+  // may be returned. Twice the radius: a sphere that starts inside an obstacle is first moved out, by up to its radius.
+  const double reach = 2.0 * radius + dt * (transport.norm() + 2.0 * max_slide_) + 3.0 * step_way_;
+  thread_local Nearby near;
+  find_near<Dim>(placed_, position, reach, near);
+  if (near.groups.empty()) {
     position += dt * transport;
     return false;
   }
-  const auto radius_at = [&](const Candidate& c) { return (placed_[c.obstacle].obstacle.wall ? wall_guard : 1.0) * radius; };
-  const auto facet_of = [&](const Candidate& c) -> const Simplex<Dim>& { return placed_[c.obstacle].bvh.simplices()[c.facet]; };
+  push_out<Dim>(placed_, near, radius, position);
 
-  // Out of what it overlaps.
-  for (const Candidate& candidate : candidates) {
-    const Vec<Dim> local = position - placed_[candidate.obstacle].displacement;
-    const Vec<Dim> from_obstacle = local - closest_point<Dim>(local, facet_of(candidate));
-    const double distance = from_obstacle.norm();
-    const double least = radius_at(candidate);
-    if (distance > 0.0 && distance < least) position += (least - distance) / distance * from_obstacle;
-  }
-
-  bool hit = false;
-  double elapsed = 0.0;
-  Vec<Dim> carried = Vec<Dim>::Zero();
-  for (int bounce = 0; bounce < max_bounces; ++bounce) {
-    const double remaining = dt - elapsed;
-    std::optional<SweepContact<Dim>> first;
-    const Candidate* touched = nullptr;
-    for (const Candidate& candidate : candidates) {
-      // In the frame that moves with the obstacle.
-      const Placed& placed = placed_[candidate.obstacle];
-      const Vec<Dim> local = position - placed.displacement - elapsed * placed.obstacle.velocity;
-      const auto contact = sweep_sphere<Dim>(local, remaining * (transport - placed.obstacle.velocity), radius_at(candidate),
-                                             facet_of(candidate));
-      if (contact && (!first || contact->time < first->time)) {
-        first = contact;
-        touched = &candidate;
+  Moving<Dim> sphere{position, transport, velocity};
+  int bounces = 0;
+  const int n_legs = count_legs<Dim>(placed_, near, radius);
+  for (int leg = 1; leg <= n_legs; ++leg) {
+    const double leg_end = leg == n_legs ? 1.0 : static_cast<double>(leg) / n_legs;
+    while (sphere.share < leg_end) {
+      const Way<Dim> straight = find_way(sphere, leg_end, dt);
+      const double girth = (bounces < max_bounces ? 1.0 : squeezed) * radius;
+      const FirstHit<Dim> hit = find_first_hit<Dim>(placed_, near, girth, sphere, straight, leg_end);
+      if (!hit.touched) {
+        arrive<Dim>(sphere, straight.goal, leg_end);
+        break;
       }
+      const double share = sphere.share + hit.time * (leg_end - sphere.share);
+      arrive<Dim>(sphere, hit.touched->pose(share).to_world(hit.place), share);
+      if (bounces++ == 2 * max_bounces)  // held fast from all sides: it goes with what it touched last
+        arrive<Dim>(sphere, hit.touched->pose(leg_end).to_world(hit.place), leg_end);
+      else
+        bounce(sphere, hit);
     }
-    if (!first) {
-      position += remaining * transport;
-      return hit;
-    }
-    hit = true;
-    position += first->time * remaining * transport;
-    elapsed += first->time * remaining;
-    const Obstacle<Dim>& obstacle = placed_[touched->obstacle].obstacle;
-    const Vec<Dim> surface = obstacle.velocity_at(first->normal);
-    carried = obstacle.velocity;
-    transport = surface + respond<Dim>(transport - surface, first->normal, obstacle.response);
-    velocity = surface + respond<Dim>(velocity - surface, first->normal, obstacle.response);
   }
-  position += (dt - elapsed) * carried;
-  return hit;
+  position = sphere.position;
+  transport = sphere.transport;
+  velocity = sphere.velocity;
+  return bounces > 0;
 }
 
+template struct PlacedObstacle<1>;
+template struct PlacedObstacle<2>;
+template struct PlacedObstacle<3>;
 template class Colliders<1>;
 template class Colliders<2>;
 template class Colliders<3>;

@@ -1,6 +1,7 @@
 #pragma once
-// Collision of particles (spheres) with triangle meshes  [P 6.3, Algorithm 2].
+// Collision of particles (spheres) with triangle meshes  [P 6.3, Algorithm 2], at rest or moving rigidly.
 
+#include "core/geometry/motion.h"
 #include "core/geometry/simplex_bvh.h"
 
 #include <optional>
@@ -17,54 +18,90 @@ struct ContactResponse {
 /// What particles meet. As a wall (core/sph/walls.h) it also takes part in density, pressure, shear and heat of the fluid near it.
 template <int Dim>
 struct Obstacle {
-  std::vector<Simplex<Dim>> facets;  ///< where it is at the start [m]
+  std::vector<Simplex<Dim>> facets;  ///< at rest, before its motion moves it [m]
   ContactResponse response = {};
   bool wall = false;
   /// The facets bound a solid, wound outward; otherwise they are a sheet, and what lies behind it is solid to either side.
   bool closed = false;
-  Vec<Dim> velocity = Vec<Dim>::Zero();          ///< it moves with [m/s]
-  Vec<Dim> surface_velocity = Vec<Dim>::Zero();  ///< of its surface beyond that, as of a belt or a lid: its part along the surface [m/s]
+  Motion<Dim> motion = {};
+  /// Of its surface beyond that, as of a belt or a lid: its part along the surface [m/s]. It turns with the obstacle.
+  Vec<Dim> surface_velocity = Vec<Dim>::Zero();
   std::optional<double> temperature = std::nullopt;  ///< [K]; absent: no heat passes
+};
 
-  /// Of the material at a place of the surface with unit normal `normal` [m/s].
-  Vec<Dim> velocity_at(const Vec<Dim>& normal) const { return velocity + surface_velocity - surface_velocity.dot(normal) * normal; }
+/// An obstacle where it is now. Its facets stay at rest in the BVH: queries are taken to where it is at rest instead.
+template <int Dim>
+struct PlacedObstacle {
+  Obstacle<Dim> obstacle;  ///< its facets live in the BVH
+  SimplexBvh<Dim> bvh;
+  Vec<Dim> pivot = Vec<Dim>::Zero();  ///< it turns about, at rest [m]
+  double reach = 0.0;                 ///< of the farthest corner from the pivot [m]
+
+  // The step being made, or none: then begin and end are the same.
+  Pose<Dim> begin, end;
+  Mat<Dim> turn = Mat<Dim>::Zero();  ///< skew [rad]: end.rotation = exp(turn) begin.rotation
+  Twist<Dim> twist;                  ///< the mean one of the step, about where the pivot ends; at rest in time, the motion's own
+  RigidAcceleration<Dim> acceleration;
+
+  bool turning() const { return !turn.isZero(0.0); }
+  bool moving() const { return turning() || begin.translation != end.translation; }
+
+  /// After the share `s` of the step.
+  Pose<Dim> pose(double s) const;
+
+  /// The motion and the sliding of the surface at a place of it with unit normal `normal` [m/s].
+  Vec<Dim> velocity_at(const Vec<Dim>& x, const Vec<Dim>& normal) const {
+    const Vec<Dim> slide = begin.rotation * obstacle.surface_velocity;
+    return twist.at(x) + slide - slide.dot(normal) * normal;
+  }
 };
 
 /// Obstacles of one scene. Facets are two-sided to a swept particle: it stays on the side it is on.
 template <int Dim>
 class Colliders {
  public:
+  using Placed = PlacedObstacle<Dim>;
+
   /// Facets without area hold nothing off and are no error.
   void add(Obstacle<Dim> obstacle);
 
   bool empty() const { return placed_.empty(); }
   bool has_walls() const;
-  double max_speed() const;          ///< of obstacles that move and surfaces that slide [m/s]
-  double max_obstacle_speed() const;  ///< of obstacles that move alone [m/s]
+  const std::vector<Placed>& placed() const { return placed_; }
 
-  /// Puts obstacles with velocities where they are at `time` [s].
+  /// At least the speed [m/s] of any point of an obstacle, with the sliding of its surface, between `begin` and `end` [s].
+  double speed_bound(double begin, double end) const;
+
+  /// Puts every obstacle where it is at `time` [s].
   void place_at(double time);
 
-  /// Moves a sphere of radius `radius` [m] for `dt` [s] with `transport` velocity; at each hit the rest of the step goes on with the
-  /// new velocity and may hit again, up to `max_bounces`, after which it stays at the last contact, carried by that obstacle. A sphere that overlaps an
-  /// obstacle at the start is first moved out to touch it. `velocity` [m/s] gets the same answers as `transport`. Obstacles that move
-  /// do so meanwhile, from where place_at() put them. A wall holds fluid off by its pressure: there the sphere is but a guard, of
-  /// `wall_guard` times the radius. Returns whether anything was hit.
+  /// Begins the step from `time`, at which everything was placed, to `time` + `dt` [s]: from now on move_sphere() meets what moves.
+  void begin_step(double time, double dt);
+
+  /// Ends it: everything is where it has moved to.
+  void end_step();
+
+  /// The farthest that any point of an obstacle moves in this step, at most [m].
+  double step_way() const { return step_way_; }
+
+  /// Moves a sphere of radius `radius` [m] with `transport` velocity for the step of `dt` [s] that has begun; at each hit it goes on with
+  /// the new velocity, in the frame of what it hit, and may hit again, up to `max_bounces`. Then the sphere gives in: it goes on as one of
+  /// a thousandth of the radius (`squeezed`), so that it is pressed flat before it changes sides. A sphere that overlaps an obstacle at the
+  /// start is first moved out to touch it. `velocity` [m/s] gets the same answers as `transport`. A wall holds fluid off by its pressure:
+  /// there the sphere is but a guard, of `wall_guard` times the radius. Returns whether anything was hit.
+  ///
+  /// Relative to an obstacle that turns, a straight way is curved. It is taken along chords, whose ends are exact; they are so short that they
+  /// leave it by no more than a tenth of the guard. So a sphere changes sides at no speed.
   bool move_sphere(double radius, double dt, Vec<Dim>& position, Vec<Dim>& transport, Vec<Dim>& velocity) const;
 
   static constexpr int max_bounces = 8;
   static constexpr double wall_guard = 0.4;  ///< a quarter of the spacing in 3D
-
-  /// An obstacle where it is now: facets are the BVH's, moved by `displacement`.
-  struct Placed {
-    Obstacle<Dim> obstacle;  ///< its facets live in the BVH
-    SimplexBvh<Dim> bvh;
-    Vec<Dim> displacement = Vec<Dim>::Zero();  ///< since the start [m]
-  };
-  const std::vector<Placed>& placed() const { return placed_; }
+  static constexpr double squeezed = 1e-3;
 
  private:
   std::vector<Placed> placed_;
+  double max_slide_ = 0.0;  ///< fastest surface_velocity [m/s]
+  double step_way_ = 0.0;
 };
 
 }  // namespace smelt

@@ -112,7 +112,7 @@ void Solver<Dim, Real>::prepare(double time) {
 
 template <int Dim, typename Real>
 TimeStep Solver<Dim, Real>::step(double remaining, double time) {
-  const TimeStep limit = compute_time_step(time_step_input(), parameters_.courant);
+  const TimeStep limit = find_time_step(remaining, time);
   if (!(limit.dt >= parameters_.min_time_step))
     throw DivergedError(fmt::format(
         "the time step collapsed to {:.3g} s (floor {:.3g} s) at t = {:.6g} s, limited by the {} term; lower the {} or raise "
@@ -124,8 +124,9 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
 
   // Leap-frog: half a kick, a whole drift, half a kick.
   kick(0.5 * dt);
+  colliders_.begin_step(time, dt);
   drift(dt);
-  colliders_.place_at(time + dt);
+  colliders_.end_step();
 
   if (2.0 * travelled_ > parameters_.skin * parameters_.smoothing_length) search_neighbours();
   if (walls_) walls_->update(colliders_, particles_.position);
@@ -354,7 +355,7 @@ void Solver<Dim, Real>::drift(double dt) {
         return (particles_.position[i] - before).norm();
       },
       [](double a, double b) { return std::max(a, b); });
-  travelled_ += farthest + dt * colliders_.max_obstacle_speed();
+  travelled_ += farthest + colliders_.step_way();
 }
 
 template class Solver<3, float>;

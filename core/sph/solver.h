@@ -117,6 +117,7 @@ class Solver {
   double fastest_sound() const;
   double internal_energy(std::size_t i) const { return terms_.gas ? particles_.internal_energy[i] : 0.0; }
   TimeStepInput time_step_input() const;
+  TimeStep find_time_step(double remaining, double time) const;
   void check_state(double time) const;
 
   SolverParameters<Dim> parameters_;

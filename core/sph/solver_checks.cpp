@@ -42,12 +42,22 @@ TimeStepInput Solver<Dim, Real>::time_step_input() const {
         return Extremes{std::max(a.speed2, b.speed2), std::max(a.acceleration2, b.acceleration2),
                         std::max(a.viscosity, b.viscosity)};
       });
-  input.max_speed = std::max(std::sqrt(extremes.speed2), colliders_.max_speed());
+  input.max_speed = std::sqrt(extremes.speed2);
   input.max_acceleration = std::sqrt(extremes.acceleration2);
   input.max_kinematic_viscosity = extremes.viscosity;
   for (const Material& m : materials_)
     if (m.heat) input.max_diffusivity = std::max(input.max_diffusivity, m.heat->diffusivity);
   return input;
+}
+
+/// What the fluid allows, less where colliders move faster than it within that time.
+template <int Dim, typename Real>
+TimeStep Solver<Dim, Real>::find_time_step(double remaining, double time) const {
+  TimeStepInput input = time_step_input();
+  const TimeStep without = compute_time_step(input, parameters_.courant);
+  if (colliders_.empty()) return without;
+  input.max_speed = std::max(input.max_speed, colliders_.speed_bound(time, time + std::min(without.dt, remaining)));
+  return compute_time_step(input, parameters_.courant);
 }
 
 // ------------------------------------------------------------------------------------------------------------- watchfulness

@@ -18,7 +18,8 @@ Vec<Dim> held_by_wall(const Vec<Dim>& vector, const Vec<Dim>& normal, const Cont
 
 /// Adds to the rate sums of a particle with velocity `v`, density `rho` and temperature `T`, P standing for held_by_wall:
 ///   density_rate     - rho sum push (v - u).n                     (the velocity across is mirrored)
-///   velocity_moment  + sum stretch P (v - u) (x) n                (v_w - v = P (v - u) (n.y)/d in the solid)
+///   velocity_moment  + sum stretch P (v - u) (x) n                (v_w - v = P (v - u) (n.y)/d in the solid, and
+///                    + sum (1 - slip) Omega (Gamma I - first (x) n)      (1 - slip) Omega y: what turns with the wall is not sheared)
 ///   position_moment  + int y (x) grad_w dV
 ///   heat             - 2 sum (T - T_wall) A/d                     (T_w - T = (T - T_wall) (n.y)/d), where the wall has a temperature.
 template <int Dim, typename Real>
@@ -27,10 +28,15 @@ void accumulate_wall_rates(const WallNeighbour<Dim>& wall, const Colliders<Dim>&
   double density_rate = 0.0, heat = 0.0;
   Mat<Dim> velocity_moment = Mat<Dim>::Zero();
   for (const WallContact<Dim>& contact : wall.contacts) {
-    const Obstacle<Dim>& obstacle = colliders.placed()[contact.obstacle].obstacle;
-    const Vec<Dim> relative = v - obstacle.velocity_at(contact.normal);
+    const PlacedObstacle<Dim>& placed = colliders.placed()[contact.obstacle];
+    const Obstacle<Dim>& obstacle = placed.obstacle;
+    const Vec<Dim> relative = v - contact.velocity;
     density_rate -= rho * contact.push * relative.dot(contact.normal);
     velocity_moment += contact.stretch * held_by_wall<Dim>(relative, contact.normal, obstacle.response) * contact.normal.transpose();
+    if (!placed.twist.spin.isZero(0.0)) {
+      const Mat<Dim> moment = contact.solid * Mat<Dim>::Identity() - contact.first * contact.normal.transpose();
+      velocity_moment += (1.0 - obstacle.response.friction) * placed.twist.spin * moment;
+    }
     if (terms.heat && obstacle.temperature) heat -= 2.0 * (temperature - *obstacle.temperature) * contact.conductance;
   }
   sums.density_rate += static_cast<Real>(density_rate);
@@ -43,12 +49,12 @@ void accumulate_wall_rates(const WallNeighbour<Dim>& wall, const Colliders<Dim>&
 }
 
 /// int (p_w - p) grad_w dV over the solid [Pa/m], where the pressure goes on with the gradient `along` [Pa/m] that it has along the wall
-/// and with rho g across it.
+/// and with rho (g - a_w) across it.
 template <int Dim>
 Vec<Dim> wall_pressure_moment(const WallNeighbour<Dim>& wall, const Vec<Dim>& along, double rho, const Vec<Dim>& gravity) {
   Vec<Dim> sum = Vec<Dim>::Zero();
   for (const WallContact<Dim>& contact : wall.contacts) {
-    const Vec<Dim> gradient = along + (rho * gravity - along).dot(contact.normal) * contact.normal;
+    const Vec<Dim> gradient = along + (rho * (gravity - contact.acceleration) - along).dot(contact.normal) * contact.normal;
     sum += contact.solid * gradient - contact.first.dot(gradient) * contact.normal;
   }
   return sum;

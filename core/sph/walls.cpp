@@ -42,6 +42,14 @@ bool is_small(const Simplex<Dim>& facet, const Vec<Dim>& point, double h) {
   return (facet[0] - point).squaredNorm() > 9.0 * limit2;  // a corner three lengths off: the rest at least two
 }
 
+/// The acceleration that fluid at the wall shares. What slips does not go round with the wall: it has no part in the centripetal one.
+template <int Dim>
+Vec<Dim> wall_acceleration_at(const PlacedObstacle<Dim>& placed, const Vec<Dim>& position) {
+  const RigidAcceleration<Dim>& a = placed.acceleration;
+  const Vec<Dim> arm = position - a.centre, centripetal = 0.5 * (a.gradient + a.gradient.transpose()) * arm;
+  return a.linear + a.gradient * arm - placed.obstacle.response.friction * centripetal;
+}
+
 }  // namespace
 
 template <int Dim>
@@ -63,7 +71,7 @@ void Walls<Dim>::find(const Colliders<Dim>& colliders, std::span<const Vec<Dim>>
         const auto& placed = colliders.placed()[o];
         if (!placed.obstacle.wall) continue;
         facets.clear();
-        placed.bvh.find_near(position[i] - placed.displacement, reach, facets);
+        placed.bvh.find_near(placed.begin.to_rest(position[i]), reach, facets);
         for (const std::uint32_t facet : facets) block.candidates.push_back({o, facet});
       }
       if (block.candidates.size() == before) continue;
@@ -115,9 +123,13 @@ void Walls<Dim>::append_contacts(const Colliders<Dim>& colliders, const Vec<Dim>
   for (std::size_t begin = 0, end = 0; begin < candidates.size(); begin = end) {
     const std::uint32_t o = candidates[begin].obstacle;
     while (end < candidates.size() && candidates[end].obstacle == o) ++end;
-    const auto& [obstacle, bvh, displacement] = colliders.placed()[o];
-    const Vec<Dim> local = position - displacement;
-    const double side = side_of<Dim>(obstacle, bvh, local, candidates.subspan(begin, end - begin));
+    const PlacedObstacle<Dim>& placed = colliders.placed()[o];
+    const SimplexBvh<Dim>& bvh = placed.bvh;
+    const auto of_obstacle = static_cast<std::ptrdiff_t>(contacts.size());
+    // Everything at rest first, then turned to where the obstacle is.
+    Mat<Dim> moment = Mat<Dim>::Zero();
+    const Vec<Dim> local = placed.begin.to_rest(position);
+    const double side = side_of<Dim>(placed.obstacle, bvh, local, candidates.subspan(begin, end - begin));
     for (const Candidate& candidate : candidates.subspan(begin, end - begin)) {
       const Simplex<Dim>& facet = bvh.simplices()[candidate.facet];
       const Vec<Dim> normal = side * facet_normal<Dim>(facet);
@@ -127,25 +139,31 @@ void Walls<Dim>::append_contacts(const Colliders<Dim>& colliders, const Vec<Dim>
       // At the rim of the support rounding may leave next to nothing of either sign.
       if (!(integrals.area > 0.0)) continue;
       seen.solid += integrals.solid;
-      seen.moment += integrals.solid * Mat<Dim>::Identity() - integrals.first * normal.transpose();
+      moment += integrals.solid * Mat<Dim>::Identity() - integrals.first * normal.transpose();
 
       // Sums first; the normal is the mean once they are whole.
       constexpr double same_direction = 0.985;
       const double plane = (local - facet[0]).dot(normal);
       const bool in_front = plane > 0.0;
       const double same_plane = 0.25 * kernel_.smoothing_length();
-      auto contact = std::find_if(contacts.begin() + own, contacts.end(), [&](const WallContact<Dim>& c) {
-        return c.obstacle == o && in_front == (c.distance > 0.0) && c.normal.dot(normal) > same_direction * c.normal.norm() &&
+      auto contact = std::find_if(contacts.begin() + of_obstacle, contacts.end(), [&](const WallContact<Dim>& c) {
+        return in_front == (c.distance > 0.0) && c.normal.dot(normal) > same_direction * c.normal.norm() &&
                std::abs(c.first.dot(normal) / c.area + plane) < same_plane;
       });
       if (contact == contacts.end()) {
         const double unset = in_front ? 1.0 : -1.0;
-        contact = contacts.insert(contact, {Vec<Dim>::Zero(), Vec<Dim>::Zero(), unset, 0.0, 0.0, 0.0, 0.0, 0.0, o});
+        contact = contacts.insert(contact, {Vec<Dim>::Zero(), Vec<Dim>::Zero(), unset, 0.0, 0.0, 0.0, 0.0, 0.0, o, Vec<Dim>::Zero(), Vec<Dim>::Zero()});
       }
       contact->normal += integrals.area * normal;
       contact->first += integrals.first;
       contact->area += integrals.area;
       contact->solid += integrals.solid;
+    }
+    const Mat<Dim>& rotation = placed.begin.rotation;
+    seen.moment += rotation * moment * rotation.transpose();
+    for (auto contact = contacts.begin() + of_obstacle; contact != contacts.end(); ++contact) {
+      contact->normal = rotation * contact->normal;
+      contact->first = rotation * contact->first;
     }
   }
   seen.moment = 0.5 * (seen.moment + seen.moment.transpose()).eval();
@@ -154,6 +172,9 @@ void Walls<Dim>::append_contacts(const Colliders<Dim>& colliders, const Vec<Dim>
     contact->area = contact->normal.norm();
     contact->normal /= contact->area;
     contact->distance = -contact->first.dot(contact->normal) / facets_area;
+    const PlacedObstacle<Dim>& placed = colliders.placed()[contact->obstacle];
+    contact->velocity = placed.velocity_at(position, contact->normal);
+    contact->acceleration = wall_acceleration_at<Dim>(placed, position);
     // A plane seen from behind takes back what a plane in front of it gave: nothing goes on linearly from there.
     if (contact->distance <= 0.0) continue;
     const double distance = std::max(contact->distance, least_distance_);

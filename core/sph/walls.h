@@ -4,7 +4,8 @@
 // The part of a particle's support that lies in a solid is integrated over the solid's facets (core/sph/wall_integrals.h), corners
 // included. In it the velocity goes on linearly through the wall's own, the pressure with the gradient that it has along the wall and
 // that gravity gives it across, the temperature linearly through the wall's own. Symbols: n normal out of the solid, y the way from the
-// particle, d > 0 the distance to a facet's plane, u the wall's velocity, A = int_f W dS, Gamma = int W dV over the solid, dx the spacing.
+// particle, d > 0 the distance to a facet's plane, u the wall's rigid velocity field at the particle's place, Omega its spin (skew), a_w its
+// acceleration, A = int_f W dS, Gamma = int W dV over the solid, dx the spacing.
 
 #include "core/sph/collision.h"
 #include "core/sph/particles.h"
@@ -29,6 +30,8 @@ struct WallContact {
   double stretch = 0.0;     ///< (d A + Gamma)/d: int (n.y)/d grad_w dV = stretch n [1/m]
   double conductance = 0.0;  ///< A/d [1/m^2]
   std::uint32_t obstacle = 0;
+  Vec<Dim> velocity;      ///< u: the wall's motion continued to the particle, and the sliding of its surface [m/s]
+  Vec<Dim> acceleration;  ///< a_w: of the wall, likewise [m/s^2]
 };
 
 /// A particle near walls.

@@ -71,7 +71,7 @@ TEST(BuildSimulation, CollidersCarryWhatTheSceneSaysOfThem) {
   EXPECT_TRUE(colliders.placed()[1].obstacle.closed);
   EXPECT_EQ(colliders.placed()[1].obstacle.temperature, 450.0);
   colliders.place_at(2.0);
-  EXPECT_EQ(colliders.placed()[1].displacement, Vec3(0, -1, 0));
+  EXPECT_EQ(colliders.placed()[1].begin.translation, Vec3(0, -1, 0));
 
   // Pictures show it where the simulation has it.
   RenderScene view = build_view(scene);

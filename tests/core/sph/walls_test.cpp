@@ -179,7 +179,7 @@ TEST(Walls, HeatCrossesBetweenWallsOfGivenTemperature) {
 TEST(Walls, APistonDrivesTheFluid) {
   Particles<2> p = make_layer<2>(6, 0.5);
   Obstacle<2> piston = make_plane<2>(0.0);
-  piston.velocity = Vec<2>(0.0, 5.0);
+  piston.motion.velocity = Vec<2>(0.0, 5.0);
   auto parameters = make_parameters<2>();
   parameters.sound_speed = 50.0;
   parameters.artificial_viscosity = 0.5;
@@ -272,7 +272,7 @@ TEST(Walls, ResumeFromStateAloneIsExact) {
   parameters.density_diffusion = 0.1;
   parameters.hourglass_control = 1.0;
   Obstacle<2> plane = make_plane<2>(-0.1 * spacing);
-  plane.velocity = Vec<2>(0.0, 0.1);
+  plane.motion.velocity = Vec<2>(0.0, 0.1);
   const auto frame = [](Solver<2, double>& solver, double from) {
     solver.prepare(from);
     for (double t = 0.0; t < 0.01;) t += solver.step(0.01 - t, from + t).dt;
