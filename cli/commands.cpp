@@ -66,10 +66,11 @@ void print_check(const SceneOptions& o) {
   const SceneForecast f = forecast_scene(scene);
   for (const std::string& warning : f.warnings) fmt::print(stderr, "smelt: warning: {}\n", warning);
   fmt::print(
-      "scene       {}: {} frames at {} fps\nparticles   {}, {:.4g} m apart\nvolume      {:.6g} m3\nsound speed {:.4g} m/s\n"
+      "scene       {}: {} frames at {} fps\nparticles   {}{}, {:.4g} m apart\nvolume      {:.6g} m3\nsound speed {:.4g} m/s\n"
       "time step   {:.3g} s, set by the {} term\nsteps       {:.0f} at that time step\nmemory      {:.1f} MB for the simulation\n"
       "time        {:.0f} s for the simulation, at this machine's pace now\n",
-      scene.shot.name, scene.shot.frames, scene.shot.fps, f.n_particles, f.spacing, f.body_volume, f.sound_speed, f.time_step,
+      scene.shot.name, scene.shot.frames, scene.shot.fps, f.n_particles,
+      f.n_particles_end == f.n_particles ? "" : fmt::format(" at the start, {} at the end", f.n_particles_end), f.spacing, f.body_volume, f.sound_speed, f.time_step,
       f.time_step_term, f.n_steps, f.bytes / 1e6, f.simulate_seconds);
   for (const std::string& advice : f.advice) fmt::print("advice      {}\n", advice);
 }

@@ -12,7 +12,7 @@ namespace smelt {
 
 namespace {
 
-constexpr std::string_view magic = "smelt checkpoint 2\n";
+constexpr std::string_view magic = "smelt checkpoint 3\n";
 
 class ByteWriter {
  public:
@@ -67,6 +67,8 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
   writer.value(checkpoint.time);
   writer.value(checkpoint.scene_hash);
   for_each_array(checkpoint.particles, [&](const auto& values) { writer.array(values); });
+  writer.value(checkpoint.account.next_id);
+  for (const auto* counts : {&checkpoint.account.initial, &checkpoint.account.removed, &checkpoint.account.entered}) writer.array(*counts);
   writer.value(hash_bytes(writer.bytes));
   write_file_atomically(path, writer.bytes);
 }
@@ -87,6 +89,8 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
   reader.value(checkpoint.time);
   reader.value(checkpoint.scene_hash);
   for_each_array(checkpoint.particles, [&](auto& values) { reader.array(values); });
+  reader.value(checkpoint.account.next_id);
+  for (auto* counts : {&checkpoint.account.initial, &checkpoint.account.removed, &checkpoint.account.entered}) reader.array(*counts);
   return checkpoint;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 // The exact state of a simulation at the end of a frame, for a resume to the same bytes.
 
+#include "core/sph/open_boundary.h"
 #include "core/sph/particles.h"
 
 #include <cstdint>
@@ -13,6 +14,7 @@ struct Checkpoint {
   double time = 0.0;                 ///< [s]
   std::uint64_t scene_hash = 0;      ///< of what the simulation depends on
   Particles<3> particles;
+  ParticleAccount account;
 };
 
 /// Writes all arrays bit by bit, with a hash of them at the end. Atomic. Throws Error.

@@ -3,7 +3,9 @@
 #include "core/error.h"
 #include "core/geometry/inside.h"
 #include "core/geometry/seeding.h"
+#include "io/height_field.h"
 #include "io/mesh_import.h"
+#include "scenes/check_vents.h"
 #include "scenes/collider_motion.h"
 #include "scenes/scene_reader.h"
 
@@ -36,9 +38,17 @@ void place(TriangleMesh& mesh, const PlacementSettings& s) {
   }
 }
 
-TriangleMesh import_placed(const Scene& scene, const std::string& name, const PlacementSettings& placement) {
+TriangleMesh import_terrain(const std::filesystem::path& file, const TerrainSettings& s) {
+  const HeightField field = refine(read_height_field(file, {s.cell, s.height_scale, s.lowest, s.highest}), s.refine);
+  if (!s.closed) return make_terrain_sheet(field);
+  const double shorter = field.cell * static_cast<double>(std::min(field.n_columns, field.n_rows) - 1);
+  return make_terrain_solid(field, *std::min_element(field.height.begin(), field.height.end()) - s.depth.value_or(0.1 * shorter));
+}
+
+TriangleMesh import_placed(const Scene& scene, const std::string& name, const PlacementSettings& placement,
+                           const std::optional<TerrainSettings>& terrain = std::nullopt) {
   const std::filesystem::path file = find_mesh(scene, name);
-  TriangleMesh mesh = import_mesh(file);
+  TriangleMesh mesh = is_height_field(file) ? import_terrain(file, terrain.value_or(TerrainSettings{})) : import_mesh(file);
   try {
     validate_mesh(mesh);
     place(mesh, placement);
@@ -187,6 +197,7 @@ double compute_expected_speed(const Scene& scene, const Box3& scene_bounds, cons
     for (const Vec3& x : setup.colliders[k].vertices) reach = std::max(reach, (x - motion.pivot).norm());
     start = std::max(start, speed_bound(motion, 0.0, scene.shot.frames / scene.shot.fps, reach) + setup.obstacles[k].surface_velocity.norm());
   }
+  for (const EmitterSettings& e : scene.emitters) start = std::max(start, e.flow_rate / (std::numbers::pi * e.radius * e.radius));
   return std::sqrt(2.0 * g * height) + start;
 }
 
@@ -214,12 +225,27 @@ Obstacle<3> to_obstacle(const ColliderSettings& s, const TriangleMesh& mesh) {
   obstacle.motion = to_motion(s, mesh);
   obstacle.surface_velocity = s.surface_velocity;
   obstacle.temperature = s.temperature;
+  if (s.until) obstacle.until = *s.until;
   return obstacle;
+}
+
+Emitter<3> to_emitter(const Scene& scene, const EmitterSettings& s) {
+  Emitter<3> emitter;
+  emitter.position = s.position;
+  emitter.direction = s.direction.normalized();
+  emitter.radius = s.radius;
+  emitter.flow_rate = s.flow_rate;
+  emitter.start = s.start;
+  emitter.end = s.end.value_or(std::numeric_limits<double>::infinity());
+  emitter.temperature = s.temperature.value_or(0.0);
+  emitter.material = static_cast<std::uint8_t>(material_index(scene, s.material));
+  return emitter;
 }
 
 void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetup& setup) {
   SolverParameters<3>& p = setup.parameters;
-  p.particle_volume = setup.body_volume / static_cast<double>(setup.particles.size());
+  p.particle_volume = setup.particles.size() > 0 ? setup.body_volume / static_cast<double>(setup.particles.size())
+                                                 : std::pow(*scene.particles.spacing, 3);
   setup.spacing = std::cbrt(p.particle_volume);
   p.smoothing_length = scene.particles.smoothing_length_over_spacing * setup.spacing;
   p.gravity = scene.gravity;
@@ -237,6 +263,8 @@ void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetu
   p.equation_of_state.background_pressure = scene.solver.background_pressure;
   p.density = to_density_form(scene.solver.density);
   p.period = to_period(scene);
+  for (const EmitterSettings& e : scene.emitters) p.emitters.push_back(to_emitter(scene, e));
+  for (const OutflowSettings& o : scene.outflows) p.outflows.push_back({{*o.lower, *o.upper}, o.removes == "outside"});
   p.courant = scene.time_step.courant;
   p.min_time_step = scene.time_step.min_time_step;
   const Vec3 margin = Vec3::Constant(10.0 * scene_bounds.extent().maxCoeff());
@@ -253,7 +281,13 @@ std::vector<TriangleMesh> import_placed_bodies(const Scene& scene) {
 }
 
 TriangleMesh import_placed_collider(const Scene& scene, const ColliderSettings& collider) {
-  return import_placed(scene, collider.mesh, collider.placement);
+  return import_placed(scene, collider.mesh, collider.placement, collider.terrain);
+}
+
+double count_poured(const SimulationSetup& setup, double seconds) {
+  double volume = 0.0;
+  for (const Emitter<3>& e : setup.parameters.emitters) volume += e.flow_rate * std::max(0.0, std::min(e.end, seconds) - e.start);
+  return volume / setup.parameters.particle_volume;
 }
 
 Rheology to_rheology(const ViscositySettings& s) {
@@ -285,9 +319,11 @@ SimulationSetup build_simulation(const Scene& scene) {
   for (const MaterialSettings& m : scene.materials) setup.materials.push_back({m.name, m.density, to_rheology(m.viscosity), m.heat});
 
   Box3 scene_bounds = setup.body_bounds;
+  for (const EmitterSettings& e : scene.emitters) scene_bounds.extend(e.position);
+  const Vec3 middle = scene_bounds.centre();
   for (const ColliderSettings& collider : scene.colliders) {
     if (collider.mesh == "ground") {
-      scene_bounds.extend(Vec3(setup.body_bounds.centre()[0], collider.ground_height, setup.body_bounds.centre()[2]));
+      scene_bounds.extend(Vec3(middle[0], collider.ground_height, middle[2]));
       setup.colliders.emplace_back();
     } else {
       setup.colliders.push_back(import_placed_collider(scene, collider));
@@ -303,6 +339,7 @@ SimulationSetup build_simulation(const Scene& scene) {
       for (const Vec3& x : moved(mesh, pose_at(motion, key.time)).vertices) scene_bounds.extend(x);
   }
   set_parameters(scene, scene_bounds, setup);
+  check_vents(scene, setup);
 
   const Box3& domain = setup.parameters.domain;
   for (std::size_t k = 0; k < setup.colliders.size(); ++k)

@@ -12,7 +12,7 @@ namespace smelt {
 
 /// A simulation ready to start, at frame 1.
 struct SimulationSetup {
-  Particles<3> particles;
+  Particles<3> particles;                  ///< none where all of them are poured in
   SolverParameters<3> parameters;
   std::vector<Material> materials;
   std::vector<TriangleMesh> colliders;     ///< placed in the world [m], one a [[collider]]
@@ -36,6 +36,9 @@ std::vector<TriangleMesh> import_placed_bodies(const Scene& scene);
 
 /// The mesh of a collider that is not `ground`, where the scene puts it. Throws Error with the mesh's file.
 TriangleMesh import_placed_collider(const Scene& scene, const ColliderSettings& collider);
+
+/// Particles that the emitters will have poured in after `seconds` of a shot.
+double count_poured(const SimulationSetup& setup, double seconds);
 
 /// What a scene's flow law comes to.
 Rheology to_rheology(const ViscositySettings& settings);

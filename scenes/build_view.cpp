@@ -1,5 +1,9 @@
 #include "scenes/build_view.h"
 
+#include "io/height_field.h"
+#include "scenes/build_simulation.h"
+#include "surfacing/smooth_mesh.h"
+
 #include "scenes/build_simulation.h"
 #include "scenes/collider_motion.h"
 
@@ -50,6 +54,13 @@ RenderScene build_view(const Scene& scene) {
                                    [](const ColliderSettings& c) { return c.mesh == "ground"; });
   if (ground != scene.colliders.end()) bounds.lower[1] = std::min(bounds.lower[1], ground->ground_height);
 
+  std::vector<TriangleMesh> obstacles;
+  for (const ColliderSettings& collider : scene.colliders)
+    if (collider.mesh != "ground") obstacles.push_back(import_placed_collider(scene, collider));
+  if (bodies.empty())
+    for (const TriangleMesh& mesh : obstacles)
+      for (const Vec3& x : mesh.vertices) bounds.extend(x);
+
   RenderScene view = default_scene(bounds);
   set_look(scene, view.look);
   set_camera(scene.camera, view.camera);
@@ -59,8 +70,12 @@ RenderScene build_view(const Scene& scene) {
   view.ground.enabled = ground != scene.colliders.end();
   if (view.ground.enabled) view.ground.height = ground->ground_height;
   for (const ColliderSettings& collider : scene.colliders)
-    if (collider.mesh != "ground")
-      view.colliders.push_back({import_placed_collider(scene, collider), {}, collider.colour.cast<float>()});
+    if (collider.mesh != "ground") {
+      TriangleMesh& mesh = obstacles[view.colliders.size()];
+      std::vector<Vec3f> normals;
+      if (is_height_field(collider.mesh)) normals = compute_vertex_normals(mesh);
+      view.colliders.push_back({std::move(mesh), std::move(normals), collider.colour.cast<float>()});
+    }
   return view;
 }
 
@@ -69,9 +84,15 @@ void place_colliders(const Scene& scene, double time, const std::vector<Collider
   for (const ColliderSettings& collider : scene.colliders) {
     if (collider.mesh == "ground") continue;
     const std::size_t k = drawn++;
+    if (collider.until && time >= *collider.until) {
+      view.colliders[k].mesh = {};
+      view.colliders[k].normals.clear();
+      continue;
+    }
     const Motion<3> motion = to_motion(collider, at_rest[k].mesh);
     if (motion.still()) continue;
     view.colliders[k].mesh = moved(at_rest[k].mesh, pose_at(motion, time));
+    if (!at_rest[k].normals.empty()) view.colliders[k].normals = compute_vertex_normals(view.colliders[k].mesh);
   }
 }
 

@@ -9,7 +9,8 @@
 namespace smelt {
 
 struct SceneForecast {
-  std::size_t n_particles = 0;
+  std::size_t n_particles = 0;    ///< at the start
+  std::size_t n_particles_end = 0;  ///< with what is poured in; what flows out is not foreseen
   double spacing = 0.0;           ///< [m]
   double body_volume = 0.0;       ///< [m^3]
   double sound_speed = 0.0;       ///< [m/s]
@@ -22,7 +23,7 @@ struct SceneForecast {
   std::vector<std::string> advice;  ///< settings badly chosen, and what to choose
 };
 
-/// Builds the simulation and takes `n_trial_steps` steps of it.
+/// Builds the simulation and takes `n_trial_steps` steps of it; where all particles are poured in later, of a block of them in free flight.
 SceneForecast forecast_scene(const Scene& scene, int n_trial_steps = 20);
 
 }  // namespace smelt

@@ -68,7 +68,8 @@ void RunReport::set_run(const std::string& scene_text, std::uint64_t scene_hash,
   if (!root.contains("frames")) root["frames"] = ordered_json::array();
 }
 
-void RunReport::set_simulated(int frame, double time, const StepStatistics& steps, const Diagnostics<3>& d, const StageCost& cost) {
+void RunReport::set_simulated(int frame, double time, const StepStatistics& steps, const Diagnostics<3>& d,
+                              const std::optional<MassAccount>& mass, const StageCost& cost) {
   ordered_json terms = ordered_json::object();
   for (std::size_t k = 0; k < n_time_step_terms; ++k) terms[std::string(time_step_term_names[k])] = steps.n_by_term[k];
   ordered_json entry = {{"time_s", time},
@@ -86,6 +87,13 @@ void RunReport::set_simulated(int frame, double time, const StepStatistics& step
                         {"energy_J", d.kinetic_energy + d.potential_energy},
                         {"max_speed_m_s", d.max_speed},
                         {"density_error", {{"mean", d.mean_density_error}, {"max", d.max_density_error}}}};
+  if (mass)
+    entry["mass_account_kg"] = {{"initial", mass->initial},
+                                {"added", mass->added},
+                                {"removed", mass->removed},
+                                {"present", mass->present},
+                                {"imbalance", mass->initial + mass->added - mass->removed - mass->present}};
+  if (mass) entry["poured_m3"] = mass->poured_volume;
   if (d.max_temperature > 0.0) entry["temperature_K"] = {{"min", d.min_temperature}, {"max", d.max_temperature}};
   entry.update(cost_json(cost));
   document_->frame(frame)["simulate"] = entry;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace smelt {
@@ -20,6 +21,32 @@ struct StepStatistics {
 
   void add(const TimeStep& step);
 };
+
+/// What came in and went out since the start.
+struct MassAccount {
+  double initial = 0.0, added = 0.0, removed = 0.0, present = 0.0;  ///< [kg]
+  double poured_volume = 0.0;                                       ///< [m^3]
+};
+
+template <typename Real>
+std::optional<MassAccount> compute_mass_account(const Solver<3, Real>& solver, double present) {
+  const ParticleAccount& account = solver.account();
+  if (account.initial.empty()) return std::nullopt;
+  const double volume = solver.parameters().particle_volume;
+  MassAccount mass;
+  mass.present = present;
+  for (std::size_t m = 0; m < account.initial.size(); ++m) {
+    const double each = volume * solver.materials()[m].density;
+    mass.initial += each * static_cast<double>(account.initial[m]);
+    mass.removed += each * static_cast<double>(account.removed[m]);
+  }
+  for (std::size_t e = 0; e < account.entered.size(); ++e) {
+    const double poured = volume * static_cast<double>(account.entered[e]);
+    mass.poured_volume += poured;
+    mass.added += poured * solver.materials()[solver.parameters().emitters[e].material].density;
+  }
+  return mass;
+}
 
 /// What a stage cost for one frame.
 struct StageCost {
@@ -35,7 +62,9 @@ class RunReport {
   ~RunReport();
 
   void set_run(const std::string& scene_text, std::uint64_t scene_hash, double spacing, double body_volume);
-  void set_simulated(int frame, double time, const StepStatistics& steps, const Diagnostics<3>& diagnostics, const StageCost& cost);
+  /// `mass` is absent in a scene without emitters and outflow.
+  void set_simulated(int frame, double time, const StepStatistics& steps, const Diagnostics<3>& diagnostics,
+                     const std::optional<MassAccount>& mass, const StageCost& cost);
   void set_surfaced(int frame, double volume, std::size_t n_vertices, std::size_t n_triangles, const StageCost& cost);
   void set_rendered(int frame, const StageCost& cost);
   void save();

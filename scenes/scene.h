@@ -108,8 +108,20 @@ struct KeyframeSettings {
   Vec3 rotate_deg = Vec3::Zero();
 };
 
+/// How a height field becomes a terrain.
+struct TerrainSettings {
+  std::optional<double> cell;
+  double height_scale = 1.0;
+  double lowest = 0.0;
+  double highest = 1.0;
+  int refine = 1;
+  bool closed = true;
+  std::optional<double> depth;
+};
+
 struct ColliderSettings {
   std::string mesh;
+  std::optional<TerrainSettings> terrain;
   PlacementSettings placement;
   double ground_height = 0.0;
   double friction = 0.0;
@@ -122,7 +134,26 @@ struct ColliderSettings {
   std::vector<KeyframeSettings> keyframes;
   Vec3 surface_velocity = Vec3::Zero();
   std::optional<double> temperature;
+  std::optional<double> until;
   Vec3 colour{0.35, 0.36, 0.38};
+};
+
+/// A vent.
+struct EmitterSettings {
+  std::string material;
+  Vec3 position = Vec3::Zero();
+  Vec3 direction{0.0, 1.0, 0.0};
+  double radius = 0.0;
+  double flow_rate = 0.0;
+  std::optional<double> temperature;
+  double start = 0.0;
+  std::optional<double> end;
+};
+
+struct OutflowSettings {
+  std::string removes = "inside";
+  std::optional<Vec3> lower;
+  std::optional<Vec3> upper;
 };
 
 struct CameraSettings {
@@ -177,6 +208,8 @@ struct Scene {
   std::vector<MaterialSettings> materials;
   std::vector<BodySettings> bodies;
   std::vector<ColliderSettings> colliders;
+  std::vector<EmitterSettings> emitters;
+  std::vector<OutflowSettings> outflows;
   SurfacingOptions surface;
   CameraSettings camera;
   std::vector<LightSettings> lights;

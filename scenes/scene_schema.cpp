@@ -83,8 +83,23 @@ void visit_body(SchemaVisitor& v, BodySettings& s) {
   if (temperature) s.temperature = VerticalRange{temperature->first, temperature->second};
 }
 
+void visit_terrain(SchemaVisitor& v, ColliderSettings& s) {
+  bool given = s.terrain.has_value();
+  TerrainSettings t = s.terrain.value_or(TerrainSettings{});
+  v.table({"terrain", "of a `mesh` that is a height field. Its middle is put at x = z = 0, heights along y, its first row to the north (-z)"}, &given, [&] {
+    v.number({"cell_m", "distance between heights", "the .asc file's; required for .csv and .png"}, t.cell, positive);
+    v.number({"height_scale", ".asc, .csv: heights times this are metres"}, t.height_scale, positive);
+    v.number({"lowest_m", ".png: height of black"}, t.lowest, any_number);
+    v.number({"highest_m", ".png: height of white, above lowest_m"}, t.highest, any_number);
+    visit_int(v, {"refine", "each cell is divided into this many along both sides, by a cubic through the heights"}, t.refine, {1, 32});
+    v.boolean({"closed", "made a solid by walls down to a bottom; false: a sheet"}, t.closed);
+    v.number({"depth_m", "of the bottom below the lowest height", "a tenth of the field's shorter side"}, t.depth, positive);
+  });
+  if (given) s.terrain = t;
+}
+
 void visit_collider(SchemaVisitor& v, ColliderSettings& s) {
-  v.required_text({"mesh", "a mesh file, or `ground`: a floor without end"}, s.mesh);
+  v.required_text({"mesh", "a mesh file, a height field (.asc .csv .png), or `ground`: a floor without end"}, s.mesh);
   visit_placement(v, s.placement);
   v.number({"ground_y_m", "height of the `ground`"}, s.ground_height, any_number);
   v.number({"friction", "share of the tangential velocity kept after a hit; 0 with restitution 0: no slip"}, s.friction, unit_interval);
@@ -102,6 +117,7 @@ void visit_collider(SchemaVisitor& v, ColliderSettings& s) {
   v.vector({"surface_velocity_m_s", "of its surface beyond that, as of a belt that stays where it is; its part along the surface"}, s.surface_velocity, any_number);
   v.number({"temperature_K", "heat passes between it and the fluid at it; only of a `wall`, in a scene with heat", "no heat passes"},
            s.temperature, non_negative);
+  v.number({"until_s", "then it vanishes: a gate that opens", "it stays"}, s.until, positive);
   v.vector({"colour", "linear RGB in pictures"}, s.colour, unit_interval);
   visit_tables<KeyframeSettings>(
       v,
@@ -114,6 +130,25 @@ void visit_collider(SchemaVisitor& v, ColliderSettings& s) {
         v.vector({"translate_m", "of the pivot, from where the collider is placed"}, k.translate, any_number);
         v.vector({"rotate_deg", "about the pivot: about x, then y, then z"}, k.rotate_deg, any_number);
       });
+  visit_terrain(v, s);
+}
+
+void visit_emitter(SchemaVisitor& v, EmitterSettings& s) {
+  v.required_text({"material", "name of a [[material]]"}, s.material);
+  v.vector({"position_m", "middle of where it enters; it is driven for a kernel's support (three spacings) along the direction, then free"},
+           s.position, any_number);
+  v.vector({"direction", "of the flow, of any length"}, s.direction, any_number);
+  v.required_number({"radius_m", "of the vent, at least a spacing"}, s.radius, positive);
+  v.required_number({"flow_rate_m3_s", "volume poured in a second"}, s.flow_rate, positive);
+  v.number({"temperature_K", "it comes in with", "required where the material has heat, refused otherwise"}, s.temperature, non_negative);
+  v.number({"start_s", "when it begins"}, s.start, non_negative);
+  v.number({"end_s", "when it ends, after start_s", "with the shot"}, s.end, positive);
+}
+
+void visit_outflow(SchemaVisitor& v, OutflowSettings& s) {
+  v.choice({"removes", "particles `inside` the box, or those `outside`"}, s.removes, {"inside", "outside"});
+  v.vector({"lower_m", "lowest corner", "required"}, s.lower, any_number);
+  v.vector({"upper_m", "highest corner", "required"}, s.upper, any_number);
 }
 
 void visit_simulation(SchemaVisitor& v, Scene& s) {
@@ -173,9 +208,12 @@ void visit_simulation(SchemaVisitor& v, Scene& s) {
   if (is_periodic) s.periodic = periodic;
   visit_tables<MaterialSettings>(v, {"material", "what bodies are made of; at least one"}, s.materials,
                                  [&](MaterialSettings& m) { visit_material(v, m); });
-  visit_tables<BodySettings>(v, {"body", "what flows; at least one"}, s.bodies, [&](BodySettings& b) { visit_body(v, b); });
+  visit_tables<BodySettings>(v, {"body", "what flows from the start; at least one, or an [[emitter]]"}, s.bodies, [&](BodySettings& b) { visit_body(v, b); });
   visit_tables<ColliderSettings>(v, {"collider", "what it meets; none is allowed"}, s.colliders,
                                  [&](ColliderSettings& c) { visit_collider(v, c); });
+  visit_tables<EmitterSettings>(v, {"emitter", "a vent that pours; none is allowed"}, s.emitters, [&](EmitterSettings& e) { visit_emitter(v, e); });
+  visit_tables<OutflowSettings>(v, {"outflow", "a box that takes particles out of the shot; none is allowed"}, s.outflows,
+                                [&](OutflowSettings& o) { visit_outflow(v, o); });
 }
 
 // --------------------------------------------------------------------------------------------------------- surface, render

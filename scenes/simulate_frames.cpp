@@ -11,6 +11,7 @@
 #include "scenes/version.h"
 
 #include <algorithm>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -29,10 +30,10 @@ ParticleFrame to_frame(const Solver<3, Real>& solver, double spacing, int frame,
   result.frame = frame;
   result.time = time;
   const std::size_t n = p.size();
-  std::vector<std::size_t> at(n);
-  for (std::size_t i = 0; i < n; ++i) at[static_cast<std::size_t>(p.id[i])] = i;
-  for (std::size_t k = 0; k < n; ++k) {
-    const std::size_t i = at[k];
+  std::vector<std::size_t> by_id(n);
+  std::iota(by_id.begin(), by_id.end(), std::size_t{0});
+  std::sort(by_id.begin(), by_id.end(), [&](std::size_t a, std::size_t b) { return p.id[a] < p.id[b]; });
+  for (const std::size_t i : by_id) {
     result.id.push_back(p.id[i]);
     result.position.push_back(p.position[i]);
     result.velocity.push_back(p.velocity[i].cast<float>());
@@ -103,7 +104,7 @@ template <typename Real>
 void store_frame(const Solver<3, Real>& solver, const SimulationSetup& setup, const OutputFolder& folder, std::uint64_t scene_hash,
                  int frame, double time) {
   write_particles(folder.particles(frame), to_frame(solver, setup.spacing, frame, time));
-  write_checkpoint(folder.checkpoint(frame), {frame, time, scene_hash, solver.particles()});
+  write_checkpoint(folder.checkpoint(frame), {frame, time, scene_hash, solver.particles(), solver.account()});
   std::filesystem::remove(folder.checkpoint(frame - 2));
 }
 
@@ -111,7 +112,8 @@ template <typename Real>
 void run_simulation(const Scene& scene, const OutputFolder& folder, const StageOptions& options, SimulationSetup& setup,
                     const std::optional<Checkpoint>& checkpoint, std::uint64_t scene_hash, RunReport& report, Progress& progress) {
   Solver<3, Real> solver(setup.parameters, setup.materials, build_colliders(setup),
-                         checkpoint ? checkpoint->particles : std::move(setup.particles));
+                         checkpoint ? checkpoint->particles : std::move(setup.particles),
+                         checkpoint ? checkpoint->account : ParticleAccount{});
   int frame = 1;
   if (checkpoint) {
     frame = checkpoint->frame;
@@ -119,7 +121,8 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
   } else {
     const CostMeter meter;
     store_frame(solver, setup, folder, scene_hash, 1, 0.0);
-    report.set_simulated(1, 0.0, {}, compute_diagnostics(solver), meter.finish({folder.particles(1)}));
+    const Diagnostics<3> diagnostics = compute_diagnostics(solver);
+    report.set_simulated(1, 0.0, {}, diagnostics, compute_mass_account(solver, diagnostics.mass), meter.finish({folder.particles(1)}));
   }
 
   while (frame < options.frames.last) {
@@ -135,7 +138,8 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
     }
     const double time = (frame - 1) / scene.shot.fps;
     store_frame(solver, setup, folder, scene_hash, frame, time);
-    report.set_simulated(frame, time, statistics, compute_diagnostics(solver),
+    const Diagnostics<3> diagnostics = compute_diagnostics(solver);
+    report.set_simulated(frame, time, statistics, diagnostics, compute_mass_account(solver, diagnostics.mass),
                          meter.finish({folder.particles(frame), folder.checkpoint(frame)}));
   }
 }

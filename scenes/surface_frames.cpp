@@ -21,7 +21,7 @@ void surface_frames(const Scene& scene, const OutputFolder& folder, const StageO
     const ParticleFrame particles = read_particles(folder.particles(frame));
     SurfaceMesh surface;
     try {
-      surface = build_surface(particles, scene.surface);
+      if (particles.size() > 0) surface = build_surface(particles, scene.surface);  // before a vent opens there is nothing
     } catch (const Error& error) {
       fail("{}: {}", folder.particles(frame).string(), error.what());
     }

@@ -1,6 +1,7 @@
 #include "scenes/validate_scene.h"
 
 #include "core/error.h"
+#include "io/height_field.h"
 #include "scenes/nearest_word.h"
 #include "scenes/scene_reader.h"
 
@@ -88,28 +89,33 @@ void validate_mesh_file(const Scene& scene, const std::string& mesh, const std::
   }
 }
 
-void validate_bodies(const Scene& scene, SceneErrors& errors) {
+/// What is poured or filled in must be of a material that is there, and have a temperature where that has heat.
+void validate_substance(const Scene& scene, const std::string& material_name, const std::string& path, bool has_temperature, SceneErrors& errors) {
   std::vector<std::string> names;
   for (const auto& m : scene.materials) names.push_back(m.name);
+  const auto found = std::find(names.begin(), names.end(), material_name);
+  if (found == names.end()) {
+    if (material_name.empty()) return;
+    const auto nearest = nearest_word(material_name, names);
+    errors.add(path + ".material", fmt::format("there is no [[material]] named \"{}\"; {}", material_name,
+                                               nearest ? fmt::format("did you mean \"{}\"?", *nearest)
+                                                       : fmt::format("there are: {}", fmt::join(names, ", "))));
+    return;
+  }
+  const MaterialSettings& material = scene.materials[static_cast<std::size_t>(found - names.begin())];
+  if (material.heat && !has_temperature)
+    errors.add(path + ".temperature_K", fmt::format("missing: material \"{}\" has heat", material.name));
+  if (!material.heat && has_temperature)
+    errors.add(path + ".temperature_K", fmt::format("material \"{}\" has no heat; give it one, or leave this out", material.name));
+}
+
+void validate_bodies(const Scene& scene, SceneErrors& errors) {
   for (std::size_t k = 0; k < scene.bodies.size(); ++k) {
     const BodySettings& body = scene.bodies[k];
     const std::string path = fmt::format("body.{}", k);
     validate_placement(body.placement, path, errors);
     validate_mesh_file(scene, body.mesh, path, errors);
-    const auto found = std::find(names.begin(), names.end(), body.material);
-    if (found == names.end()) {
-      if (body.material.empty()) continue;
-      const auto nearest = nearest_word(body.material, names);
-      errors.add(path + ".material", fmt::format("there is no [[material]] named \"{}\"; {}", body.material,
-                                                 nearest ? fmt::format("did you mean \"{}\"?", *nearest)
-                                                         : fmt::format("there are: {}", fmt::join(names, ", "))));
-      continue;
-    }
-    const MaterialSettings& material = scene.materials[static_cast<std::size_t>(found - names.begin())];
-    if (material.heat && !body.temperature)
-      errors.add(path + ".temperature_K", fmt::format("missing: material \"{}\" has heat", material.name));
-    if (!material.heat && body.temperature)
-      errors.add(path + ".temperature_K", fmt::format("material \"{}\" has no heat; give it one, or leave this out", material.name));
+    validate_substance(scene, body.material, path, body.temperature.has_value(), errors);
   }
 }
 
@@ -131,6 +137,37 @@ void validate_keyframes(const ColliderSettings& s, const std::string& path, Scen
                                                    "keyframes in between, or use angular_velocity_rad_s",
                                                    turn));
   }
+}
+
+void validate_emitter(const Scene& scene, const EmitterSettings& s, const std::string& path, SceneErrors& errors) {
+  validate_substance(scene, s.material, path, s.temperature.has_value(), errors);
+  if (!(s.direction.norm() > 0.0)) errors.add(path + ".direction", "must not be zero");
+  if (s.end && !(*s.end > s.start)) errors.add(path + ".end_s", fmt::format("must be after start_s = {}, is {}", s.start, *s.end));
+  if (scene.particles.spacing && s.radius > 0.0 && s.radius < *scene.particles.spacing)
+    errors.add(path + ".radius_m", fmt::format("must be at least the spacing of particles, {} m, is {}; widen the vent, or take a smaller spacing",
+                                               *scene.particles.spacing, s.radius));
+  if (scene.solver.density != "continuity")
+    errors.add(path, fmt::format("goes with [solver] density = \"continuity\" alone; \"{}\" would see the back of the vent as a free surface",
+                                 scene.solver.density));
+  if (scene.periodic) errors.add(path, "a [periodic] box has none: what comes in could not go out of it");
+}
+
+void validate_outflow(const OutflowSettings& s, const std::string& path, SceneErrors& errors) {
+  if (!s.lower) errors.add(path + ".lower_m", "missing: lowest corner of the box");
+  if (!s.upper) errors.add(path + ".upper_m", "missing: highest corner of the box");
+  if (s.lower && s.upper && !((*s.upper - *s.lower).array() > 0.0).all()) errors.add(path + ".upper_m", "must be above lower_m along every axis");
+}
+
+void validate_terrain(const ColliderSettings& s, const std::string& path, SceneErrors& errors) {
+  const std::string extension = std::filesystem::path(s.mesh).extension().string();
+  if (!is_height_field(s.mesh)) {
+    if (s.terrain) errors.add(path + ".terrain", fmt::format("\"{}\" is no height field (.asc, .csv or .png); leave this out", s.mesh));
+    return;
+  }
+  if (extension != ".asc" && !(s.terrain && s.terrain->cell))
+    errors.add(path + ".terrain.cell_m", fmt::format("missing: a {} file does not say how far apart its heights are", extension));
+  if (extension == ".png" && s.terrain && !(s.terrain->highest > s.terrain->lowest))
+    errors.add(path + ".terrain.highest_m", fmt::format("must be above lowest_m = {}, is {}", s.terrain->lowest, s.terrain->highest));
 }
 
 void validate_collider(const ColliderSettings& s, bool hot, const std::string& path, SceneErrors& errors) {
@@ -165,7 +202,9 @@ void validate_scene(const Scene& scene, SceneErrors& errors) {
   if (scene.shot.name.find('/') != std::string::npos) errors.add("shot.name", "names a folder and must not hold a /");
 
   if (scene.materials.empty()) errors.add("material", "missing: a scene needs at least one [[material]]");
-  if (scene.bodies.empty()) errors.add("body", "missing: a scene needs at least one [[body]]");
+  if (scene.bodies.empty() && scene.emitters.empty()) errors.add("body", "missing: a scene needs at least one [[body]] or [[emitter]]");
+  if (scene.bodies.empty() && scene.particles.count)
+    errors.add("particles.count", "counts the particles of bodies, and there are none; give spacing_m");
   if (scene.materials.size() > 255) errors.add("material", fmt::format("up to 255 are possible, there are {}", scene.materials.size()));
   std::set<std::string> names;
   std::size_t n_hot = 0;
@@ -185,7 +224,11 @@ void validate_scene(const Scene& scene, SceneErrors& errors) {
     validate_placement(scene.colliders[k].placement, path, errors);
     validate_collider(scene.colliders[k], n_hot > 0, path, errors);
     if (scene.colliders[k].mesh != "ground") validate_mesh_file(scene, scene.colliders[k].mesh, path, errors);
+    validate_terrain(scene.colliders[k], path, errors);
   }
+  for (std::size_t k = 0; k < scene.emitters.size(); ++k) validate_emitter(scene, scene.emitters[k], fmt::format("emitter.{}", k), errors);
+  if (scene.emitters.size() > 255) errors.add("emitter", fmt::format("up to 255 are possible, there are {}", scene.emitters.size()));
+  for (std::size_t k = 0; k < scene.outflows.size(); ++k) validate_outflow(scene.outflows[k], fmt::format("outflow.{}", k), errors);
   if (scene.domain.lower && scene.domain.upper && !((*scene.domain.upper - *scene.domain.lower).array() > 0.0).all())
     errors.add("domain.upper_m", "must be above lower_m along every axis");
   if (scene.periodic) validate_periodic(*scene.periodic, errors);

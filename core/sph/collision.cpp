@@ -60,6 +60,7 @@ void find_near(const Obstacles<Dim>& placed, const Vec<Dim>& position, double re
   near.facets.clear();
   for (std::uint32_t o = 0; o < placed.size(); ++o) {
     const std::size_t before = near.facets.size();
+    if (placed[o].gone) continue;
     placed[o].bvh.find_near(placed[o].begin.to_rest(position), reach, near.facets);
     if (near.facets.size() != before) near.groups.push_back({o, before, near.facets.size()});
   }
@@ -201,6 +202,7 @@ double Colliders<Dim>::speed_bound(double begin, double end) const {
 template <int Dim>
 void Colliders<Dim>::place_at(double time) {
   for (Placed& p : placed_) {
+    p.gone = time >= p.obstacle.until;
     if (p.obstacle.motion.still()) continue;
     p.begin = p.end = pose_at(p.obstacle.motion, time);
     p.turn.setZero();
@@ -213,6 +215,7 @@ void Colliders<Dim>::place_at(double time) {
 template <int Dim>
 void Colliders<Dim>::begin_step(double time, double dt) {
   step_way_ = 0.0;
+  step_end_ = time + dt;
   for (Placed& p : placed_) {
     if (p.obstacle.motion.still()) continue;
     p.end = pose_at(p.obstacle.motion, time + dt);
@@ -229,11 +232,16 @@ void Colliders<Dim>::begin_step(double time, double dt) {
 }
 
 template <int Dim>
-void Colliders<Dim>::end_step() {
+bool Colliders<Dim>::end_step() {
+  bool vanished = false;
   for (Placed& p : placed_) {
     p.begin = p.end;
     p.turn.setZero();
+    const bool gone = step_end_ >= p.obstacle.until;
+    vanished = vanished || gone != p.gone;
+    p.gone = gone;
   }
+  return vanished;
 }
 
 template <int Dim>

@@ -4,6 +4,7 @@
 #include "core/geometry/motion.h"
 #include "core/geometry/simplex_bvh.h"
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -27,6 +28,7 @@ struct Obstacle {
   /// Of its surface beyond that, as of a belt or a lid: its part along the surface [m/s]. It turns with the obstacle.
   Vec<Dim> surface_velocity = Vec<Dim>::Zero();
   std::optional<double> temperature = std::nullopt;  ///< [K]; absent: no heat passes
+  double until = std::numeric_limits<double>::infinity();  ///< it vanishes then [s]
 };
 
 /// An obstacle where it is now. Its facets stay at rest in the BVH: queries are taken to where it is at rest instead.
@@ -42,6 +44,7 @@ struct PlacedObstacle {
   Mat<Dim> turn = Mat<Dim>::Zero();  ///< skew [rad]: end.rotation = exp(turn) begin.rotation
   Twist<Dim> twist;                  ///< the mean one of the step, about where the pivot ends; at rest in time, the motion's own
   RigidAcceleration<Dim> acceleration;
+  bool gone = false;  ///< it has vanished
 
   bool turning() const { return !turn.isZero(0.0); }
   bool moving() const { return turning() || begin.translation != end.translation; }
@@ -72,14 +75,14 @@ class Colliders {
   /// At least the speed [m/s] of any point of an obstacle, with the sliding of its surface, between `begin` and `end` [s].
   double speed_bound(double begin, double end) const;
 
-  /// Puts every obstacle where it is at `time` [s].
+  /// Puts every obstacle where it is at `time` [s], and takes away those that have vanished.
   void place_at(double time);
 
   /// Begins the step from `time`, at which everything was placed, to `time` + `dt` [s]: from now on move_sphere() meets what moves.
   void begin_step(double time, double dt);
 
-  /// Ends it: everything is where it has moved to.
-  void end_step();
+  /// Ends it: everything is where it has moved to. Returns whether an obstacle vanished.
+  bool end_step();
 
   /// The farthest that any point of an obstacle moves in this step, at most [m].
   double step_way() const { return step_way_; }
@@ -102,6 +105,7 @@ class Colliders {
   std::vector<Placed> placed_;
   double max_slide_ = 0.0;  ///< fastest surface_velocity [m/s]
   double step_way_ = 0.0;
+  double step_end_ = 0.0;  ///< [s]
 };
 
 }  // namespace smelt

@@ -44,8 +44,8 @@ Diagnostics<Dim> compute_diagnostics(const Solver<Dim, Real>& solver) {
         a.max_temperature = std::max(a.max_temperature, b.max_temperature);
         return a;
       });
-  d.mean_density_error /= static_cast<double>(p.size());
-  if (!thermal) d.min_temperature = 0.0;
+  d.mean_density_error /= static_cast<double>(std::max<std::size_t>(1, p.size()));
+  if (!thermal || p.size() == 0) d.min_temperature = 0.0;
   return d;
 }
 

@@ -43,7 +43,7 @@ Symmetric<Dim> to_symmetric(const Mat<Dim>& m) {
 /// do not vanish in rounding. Optional fields are empty where the scene does not use them.
 template <int Dim>
 struct Particles {
-  std::vector<std::int32_t> id;            ///< stable through a shot, 0 .. n-1
+  std::vector<std::int32_t> id;            ///< stable through a shot, none twice
   std::vector<std::uint8_t> material;      ///< index into the materials; empty where there is only one
   std::vector<Vec<Dim>> position;          ///< [m]
   std::vector<Vec<Dim>> velocity;          ///< [m/s]
@@ -52,6 +52,7 @@ struct Particles {
   std::vector<Symmetric<Dim>> stress;      ///< extra stress S [Pa], or empty in an inviscid scene
   std::vector<float> viscosity;            ///< eta = |S| / gdot at the last step [Pa s], or empty in an inviscid scene
   std::vector<double> internal_energy;     ///< of an ideal gas, specific, e [J/kg]; else empty
+  std::vector<std::uint8_t> driven;        ///< 1 + the emitter in whose duct it is, or 0; empty in a scene without emitters
 
   std::size_t size() const { return position.size(); }
 };
@@ -68,6 +69,7 @@ void for_each_array(Set& particles, const Visit& visit) {
   visit(particles.stress);
   visit(particles.viscosity);
   visit(particles.internal_energy);
+  visit(particles.driven);
 }
 
 }  // namespace smelt

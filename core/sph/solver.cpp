@@ -39,13 +39,14 @@ double particle_radius(double volume) {
 
 template <int Dim, typename Real>
 Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<Material> materials, Colliders<Dim> colliders,
-                          Particles<Dim> particles)
+                          Particles<Dim> particles, ParticleAccount account)
     : parameters_(parameters),
       materials_(std::move(materials)),
       colliders_(std::move(colliders)),
-      particles_(std::move(particles)) {
+      particles_(std::move(particles)),
+      account_(std::move(account)) {
   const std::size_t n = particles_.size();
-  if (n == 0) fail("simulation: there are no particles");
+  if (n == 0 && parameters_.emitters.empty()) fail("simulation: there are no particles");
   terms_.gas = parameters_.equation_of_state.law == PressureLaw::ideal_gas;
   if (!(parameters_.particle_volume > 0.0) || !(parameters_.smoothing_length > 0.0) || !(parameters_.sound_speed > 0.0 || terms_.gas))
     fail("simulation: particle volume, smoothing length and sound speed must be > 0, are {}, {}, {}",
@@ -80,15 +81,23 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
     fail("simulation: quadratic artificial viscosity is for an ideal gas; shocks in liquids are weak");
   if (terms_.gas && (colliders_.has_walls() || parameters_.density_diffusion > 0.0))
     fail("simulation: walls and density diffusion are for liquids, not for an ideal gas");
-  if (terms_.gas) energy_rate_.resize(n);
-  acceleration_.resize(n, Vec<Dim>::Zero());
-  force_sums_.resize(n);
-  rates_.resize(n);
-  if (terms_.pair.xsph) transport_.resize(n);
-  if (terms_.pair.xsph) xsph_.resize(n, Vec<Dim>::Zero());
   if (colliders_.has_walls())
     walls_.emplace(WallKernel<Dim>(parameters_.smoothing_length, parameters_.kernel), std::pow(parameters_.particle_volume, 1.0 / Dim),
                    Colliders<Dim>::wall_guard * particle_radius<Dim>(parameters_.particle_volume));
+  open_boundaries();
+  resize_derived();
+}
+
+/// All that is kept per particle beside the state.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::resize_derived() {
+  const std::size_t n = particles_.size();
+  acceleration_.resize(n, Vec<Dim>::Zero());
+  force_sums_.resize(n);
+  rates_.resize(n);
+  if (terms_.gas) energy_rate_.resize(n);
+  if (terms_.pair.xsph) transport_.resize(n, Vec<Dim>::Zero());
+  if (terms_.pair.xsph) xsph_.resize(n, Vec<Dim>::Zero());
   if (walls_ || (terms_.diffusion && terms_.pair.stress)) {
     pressure_sums_.resize(n);
     pressure_gradient_.resize(n, Vec<Dim>::Zero());
@@ -126,7 +135,7 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
   kick(0.5 * dt);
   colliders_.begin_step(time, dt);
   drift(dt);
-  colliders_.end_step();
+  if (colliders_.end_step()) travelled_ = std::numeric_limits<double>::infinity();  // the lists name an obstacle that is not there
 
   if (2.0 * travelled_ > parameters_.skin * parameters_.smoothing_length) search_neighbours();
   if (walls_) walls_->update(colliders_, particles_.position);
@@ -139,6 +148,7 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
   evaluate_forces();
   kick(0.5 * dt);
 
+  exchange_particles(time + dt);
   check_state(time + dt);
   return step;
 }
@@ -260,10 +270,13 @@ void Solver<Dim, Real>::integrate_rates(double dt) {
     const RateSums<Dim, Real>& rate = rates_[i];
     const Material& m = material(i);
     // rho c_p dT/dt = div(c_p rho0 k grad T), one c_p: the factor rho0/rho makes the exchange symmetric, so that sum m T is kept.
-    if (m.heat) particles_.temperature[i] += dt * m.heat->diffusivity * m.density / particles_.density[i] * rate.heat;
+    if (m.heat && !is_driven(i)) particles_.temperature[i] += dt * m.heat->diffusivity * m.density / particles_.density[i] * rate.heat;
     Mat<Dim> corrected_stress = Mat<Dim>::Zero();
     if (terms_.pair.stress) corrected_stress = integrate_stress(i, dt);
-    if (parameters_.density == DensityForm::continuity) particles_.density[i] += dt * rate.density_rate;
+    if (is_driven(i))
+      match_driven_density(i);
+    else if (parameters_.density == DensityForm::continuity)
+      particles_.density[i] += dt * rate.density_rate;
     if (terms_.pair.xsph)
       for (int a = 0; a < Dim; ++a) xsph_[i][a] = parameters_.xsph * rate.xsph[a];
     if (terms_.gas)
@@ -284,7 +297,7 @@ Mat<Dim> Solver<Dim, Real>::integrate_stress(std::size_t i, double dt) {
   for (int a = 0; a < Dim; ++a)
     for (int b = 0; b < Dim; ++b) bare_gradient(a, b) = rates_[i].velocity_moment[a * Dim + b];
   const Mat<Dim> gradient = bare_gradient * correction;
-  if (!terms_.relaxed || dt > 0.0) {
+  if ((!terms_.relaxed || dt > 0.0) && !is_driven(i)) {
     const Material& m = material(i);
     const double u = m.heat ? melted_fraction(*m.heat, particles_.temperature[i]) : 0.0;
     const FlowCurve curve = flow_curve_at(m.rheology, u);
@@ -313,6 +326,10 @@ void Solver<Dim, Real>::evaluate_forces() {
   });
   if (walls_)
     parallel_for_each(walls_->neighbours().size(), [&](std::size_t k) { apply_wall_forces(walls_->neighbours()[k]); });
+  if (!particles_.driven.empty())
+    parallel_for_each(particles_.size(), [&](std::size_t i) {
+      if (is_driven(i)) acceleration_[i].setZero();
+    });
 }
 
 template <int Dim, typename Real>
@@ -345,9 +362,9 @@ void Solver<Dim, Real>::drift(double dt) {
         Vec<Dim>& velocity = particles_.velocity[i];
         // XSPH moves particles with a smoothed velocity and leaves the velocity itself alone  [Monaghan 1989].
         Vec<Dim> transport = velocity;
-        if (terms_.pair.xsph) transport += xsph_[i];
+        if (terms_.pair.xsph && !is_driven(i)) transport += xsph_[i];
         const Vec<Dim> before = particles_.position[i];
-        if (colliders_.empty())
+        if (colliders_.empty() || is_driven(i))
           particles_.position[i] += dt * transport;
         else
           colliders_.move_sphere(radius, dt, particles_.position[i], transport, velocity);

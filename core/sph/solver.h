@@ -4,6 +4,7 @@
 #include "core/sph/collision.h"
 #include "core/sph/equation_of_state.h"
 #include "core/sph/material.h"
+#include "core/sph/open_boundary.h"
 #include "core/sph/pair_sums.h"
 #include "core/sph/particles.h"
 #include "core/sph/periodic.h"
@@ -46,6 +47,8 @@ struct SolverParameters {
   Box<Dim> period;
   Box<Dim> domain;                  ///< a particle that leaves it has escaped: an error; empty box: no such check
   double skin = 0.08;               ///< reach of the neighbour lists beyond the support, in smoothing lengths
+  std::vector<Emitter<Dim>> emitters;  ///< with the continuity equation alone, up to 255
+  std::vector<Outflow<Dim>> outflows;
 };
 
 /// The term switches and constants that follow from parameters and materials.
@@ -64,10 +67,11 @@ template <int Dim, typename Real>
 class Solver {
  public:
   /// Throws Error where the parameters cannot be (non-positive lengths or densities, a periodic box too short; an ideal gas that is
-  /// viscous, conducts heat, meets walls or has an adiabatic index of 1 or less; density diffusion of a gas or of a summed density). The
-  /// particles of an ideal gas bring their internal energy.
+  /// viscous, conducts heat, meets walls or has an adiabatic index of 1 or less; density diffusion of a gas or of a summed density; no
+  /// particles and no emitter). The particles of an ideal gas bring their internal energy. `account` belongs to particles of a stored
+  /// state, and is empty at the start.
   Solver(const SolverParameters<Dim>& parameters, std::vector<Material> materials, Colliders<Dim> colliders,
-         Particles<Dim> particles);
+         Particles<Dim> particles, ParticleAccount account = {});
 
   /// The state, in the order of the last neighbour search.
   const Particles<Dim>& particles() const { return particles_; }
@@ -76,6 +80,8 @@ class Solver {
   const NeighbourLists& neighbours() const { return lists_; }
   const SolverParameters<Dim>& parameters() const { return parameters_; }
   const std::vector<Material>& materials() const { return materials_; }
+  /// What came and went; without entries in a scene without emitters and outflow.
+  const ParticleAccount& account() const { return account_; }
   double mass(std::size_t i) const { return material(i).density * parameters_.particle_volume; }  ///< [kg]
   const Material& material(std::size_t i) const {
     return materials_[particles_.material.empty() ? 0 : particles_.material[i]];
@@ -119,12 +125,22 @@ class Solver {
   TimeStepInput time_step_input() const;
   TimeStep find_time_step(double remaining, double time) const;
   void check_state(double time) const;
+  bool is_driven(std::size_t i) const { return !particles_.driven.empty() && particles_.driven[i] != 0; }
+  void open_boundaries();
+  void match_driven_density(std::size_t i);
+  void exchange_particles(double time);
+  void release_driven();
+  bool remove_outflow();
+  bool pour_in(double time);
+  void resize_derived();
 
   SolverParameters<Dim> parameters_;
   std::vector<Material> materials_;
   Colliders<Dim> colliders_;
   Particles<Dim> particles_;
   SolverTerms terms_;
+  ParticleAccount account_;
+  std::vector<EmitterLayers<Dim>> layers_;  ///< of each emitter
 
   // Derived from the state.
   NeighbourLists lists_;

@@ -69,7 +69,7 @@ void Walls<Dim>::find(const Colliders<Dim>& colliders, std::span<const Vec<Dim>>
       const std::size_t before = block.candidates.size();
       for (std::uint32_t o = 0; o < colliders.placed().size(); ++o) {
         const auto& placed = colliders.placed()[o];
-        if (!placed.obstacle.wall) continue;
+        if (!placed.obstacle.wall || placed.gone) continue;
         facets.clear();
         placed.bvh.find_near(placed.begin.to_rest(position[i]), reach, facets);
         for (const std::uint32_t facet : facets) block.candidates.push_back({o, facet});

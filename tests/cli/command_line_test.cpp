@@ -14,6 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -298,6 +299,78 @@ TEST_F(CommandLine, CheckAndInfoAnswer) {
   EXPECT_NE(mesh.out.find("closed     yes"), std::string::npos) << mesh.out;
   EXPECT_NE(mesh.out.find("194.288"), std::string::npos) << mesh.out;
   EXPECT_EQ(run({"info", small_scene()}).status, 3);
+}
+
+// Particles that come and go: caches, checkpoints, surfaces, pictures and the report with another number of them in every frame.
+TEST_F(CommandLine, AVentPoursTheSameOnAnyThreadsAndAfterAResume) {
+  const fs::path scene = folder_ / "pour.toml";
+  std::ofstream(scene) << R"(
+[shot]
+name = "pour"
+frames = 7
+fps = 12
+[particles]
+spacing_m = 0.05
+[solver]
+sound_speed_m_s = 20.0
+[[material]]
+name = "syrup"
+density_kg_m3 = 1300
+viscosity = { law = "newtonian", viscosity_Pa_s = 15.0 }
+[[emitter]]
+material = "syrup"
+position_m = [0.0, 0.6, 0.0]
+direction = [0.0, -1.0, 0.0]
+radius_m = 0.12
+flow_rate_m3_s = 0.06
+start_s = 0.1
+end_s = 0.45
+[[collider]]
+mesh = "ground"
+[[outflow]]
+lower_m = [0.1, -1.0, -2.0]
+upper_m = [2.0, 1.0, 2.0]
+[camera]
+eye_m = [1.0, 1.0, 3.0]
+target_m = [0.0, 0.2, 0.0]
+width = 80
+height = 45
+)";
+  const auto with = [&](const char* out, const char* threads, std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"run", scene.string(), "-o", output(out), "--threads", threads};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Result result = run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+  };
+  with("one", "1", {});
+  with("two", "2", {});
+  with("cut", "1", {"--frames", "1-4"});
+  with("cut", "1", {"--resume"});
+  for (const char* other : {"two", "cut"}) {
+    expect_same_files(output("one") + "/particles", output(other) + "/particles", 7);
+    expect_same_files(output("one") + "/surface", output(other) + "/surface", 14);
+    expect_same_files(output("one") + "/frames", output(other) + "/frames", 7);
+  }
+  const auto report = nlohmann::json::parse(read_file(fs::path(output("cut")) / "run.json"));
+  std::vector<std::int32_t> ids;
+  for (int frame = 1; frame <= 7; ++frame) {
+    const auto& entry = report["frames"][frame - 1]["simulate"];
+    const auto& account = entry["mass_account_kg"];
+    const double added = account["added"], poured = entry["poured_m3"];
+    EXPECT_LE(std::abs(account["imbalance"].get<double>()), 1e-12 * std::max(1.0, added)) << "frame " << frame;
+    EXPECT_NEAR(added, 1300.0 * poured, 1e-9);
+    const double due = 0.06 * std::clamp((frame - 1) / 12.0 - 0.1, 0.0, 0.35);
+    EXPECT_NEAR(poured, due, 0.51 * 0.12 * 0.12 * 3.1416 * 0.05) << "frame " << frame;
+    const ParticleFrame particles = read_particles(fs::path(output("one")) / fmt::format("particles/particles.{:04}.vdb", frame));
+    EXPECT_EQ(static_cast<double>(particles.size()), entry["particles"].get<double>());
+    EXPECT_TRUE(std::adjacent_find(particles.id.begin(), particles.id.end(), std::greater_equal<>()) == particles.id.end());
+    ids = particles.id;
+  }
+  EXPECT_EQ(report["frames"][0]["simulate"]["particles"], 0);
+  EXPECT_GT(report["frames"][6]["simulate"]["mass_account_kg"]["removed"].get<double>(), 0.0);
+  EXPECT_GE(ids.back(), static_cast<std::int32_t>(ids.size())) << "ids of particles that are gone are not given again";
+  const Result check = run({"check", scene.string()});
+  EXPECT_NE(check.out.find("particles   0 at the start, 168 at the end"), std::string::npos) << check.out;
 }
 
 }  // namespace
