@@ -78,6 +78,7 @@ EmitterLayers<Dim> compute_emitter_layers(const Emitter<Dim>& emitter, double pa
   layers.period = spacing / layers.speed;
   layers.depth = spacing * std::ceil(support_radius / spacing);
   layers.n_particles = std::llround(emitter.flow_rate * (emitter.end - emitter.start) / particle_volume);
+  layers.spacing = spacing;
   layers.sites = std::move(sites);
   return layers;
 }
@@ -94,7 +95,9 @@ template <int Dim>
 Vec<Dim> entered_position(const Emitter<Dim>& emitter, const EmitterLayers<Dim>& layers, std::int64_t k, double time) {
   const auto n_sites = static_cast<std::int64_t>(layers.sites.size());
   const double entered = emitter.start + (static_cast<double>(k / n_sites) + 0.5) * layers.period;
-  return emitter.position + layers.sites[static_cast<std::size_t>(k % n_sites)] + (time - entered) * layers.speed * emitter.direction;
+  // A spacing behind the entry: on a floor there is never a gap under the last layer that others could get into.
+  const double along = (time - entered) * layers.speed - layers.spacing;
+  return emitter.position + layers.sites[static_cast<std::size_t>(k % n_sites)] + along * emitter.direction;
 }
 
 #define SMELT_INSTANTIATE(Dim)                                                                                    \

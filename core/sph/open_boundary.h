@@ -1,7 +1,7 @@
 #pragma once
 // Where particles come in and go out while a simulation runs (docs/decisions/0012-emitters.md).
 //
-// A vent is a short duct of circular section. At its entry layers of a square lattice come in, one spacing behind the other, and are driven
+// A vent is a short duct of circular section. Layers of a square lattice come in a spacing behind its entry, one spacing apart, and are driven
 // through it with the velocity that the flow rate asks for; where they leave it they are free. So what is free has its support full of
 // particles that move as it does, and none appears beside it.
 
@@ -31,7 +31,8 @@ struct EmitterLayers {
   std::vector<Vec<Dim>> sites;  ///< of a layer, from `position` [m], those nearest to the axis first
   double speed = 0.0;           ///< flow rate over the section of the sites [m/s]
   double period = 0.0;          ///< from one layer to the next: a spacing at that speed [s]
-  double depth = 0.0;           ///< length of the duct [m]: whole spacings, at least the kernel's support
+  double spacing = 0.0;         ///< of the lattice [m]
+  double depth = 0.0;           ///< length of the duct from `position` on [m]: whole spacings, at least the kernel's support
   std::int64_t n_particles = 0;  ///< in all: the poured volume over that of a particle, rounded
 };
 
@@ -40,7 +41,7 @@ struct EmitterLayers {
 template <int Dim>
 EmitterLayers<Dim> compute_emitter_layers(const Emitter<Dim>& emitter, double particle_volume, double support_radius);
 
-/// How many particles have entered by `time` [s]. The layer k enters at start + (k + 1/2) periods, when half of its volume has; the last
+/// How many particles have entered by `time` [s]. The layer k comes in at start + (k + 1/2) periods, when half of its volume has; the last
 /// one may lack sites. So the volume entered differs from rate times time by half a layer at most, and in the end by half a particle.
 template <int Dim>
 std::int64_t count_entered(const Emitter<Dim>& emitter, const EmitterLayers<Dim>& layers, double time);

@@ -266,6 +266,7 @@ void Solver<Dim, Real>::apply_wall_rates(const WallNeighbour<Dim>& wall) {
 template <int Dim, typename Real>
 void Solver<Dim, Real>::integrate_rates(double dt) {
   fields_.force.resize((particles_.size() + images_.size()) * PairFields<Dim, Real>::force_stride(terms_.pair));
+  match_driven_densities();
   parallel_for_each(particles_.size(), [&](std::size_t i) {
     const RateSums<Dim, Real>& rate = rates_[i];
     const Material& m = material(i);
@@ -273,9 +274,7 @@ void Solver<Dim, Real>::integrate_rates(double dt) {
     if (m.heat && !is_driven(i)) particles_.temperature[i] += dt * m.heat->diffusivity * m.density / particles_.density[i] * rate.heat;
     Mat<Dim> corrected_stress = Mat<Dim>::Zero();
     if (terms_.pair.stress) corrected_stress = integrate_stress(i, dt);
-    if (is_driven(i))
-      match_driven_density(i);
-    else if (parameters_.density == DensityForm::continuity)
+    if (parameters_.density == DensityForm::continuity && !is_driven(i))
       particles_.density[i] += dt * rate.density_rate;
     if (terms_.pair.xsph)
       for (int a = 0; a < Dim; ++a) xsph_[i][a] = parameters_.xsph * rate.xsph[a];

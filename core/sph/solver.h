@@ -127,7 +127,8 @@ class Solver {
   void check_state(double time) const;
   bool is_driven(std::size_t i) const { return !particles_.driven.empty() && particles_.driven[i] != 0; }
   void open_boundaries();
-  void match_driven_density(std::size_t i);
+  void match_driven_densities();
+  double match_driven_density(std::size_t i) const;
   void exchange_particles(double time);
   void release_driven();
   bool remove_outflow();

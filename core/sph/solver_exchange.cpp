@@ -1,5 +1,6 @@
 // Particles that come in and go out between steps (core/sph/open_boundary.h).
 #include "core/error.h"
+#include "core/parallel.h"
 #include "core/sph/kernel.h"
 #include "core/sph/rheology.h"
 #include "core/sph/solver.h"
@@ -47,9 +48,10 @@ void Solver<Dim, Real>::open_boundaries() {
 
 /// A driven particle has the pressure of the fluid before it, with what gravity adds on the way: relative to the density at rest,
 ///   rho_i/rho0_i - 1 = sum_j V_j W_ij (rho_j/rho0_j - 1 + g.x_ij/c^2) / sum_j V_j W_ij  over the free j,
-/// 0 before there is any. What leaves the duct meets its like.
+/// where that is positive, else 0. What leaves the duct meets its like. A vent does not suck at fluid that pulls away from it: where it did,
+/// each would make the other thinner without end.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::match_driven_density(std::size_t i) {
+double Solver<Dim, Real>::match_driven_density(std::size_t i) const {
   using Fields = PairFields<Dim, Real>;
   const Kernel<Dim> kernel(parameters_.smoothing_length, parameters_.kernel);
   const double per_c2 = 1.0 / (parameters_.sound_speed * parameters_.sound_speed);
@@ -64,7 +66,16 @@ void Solver<Dim, Real>::match_driven_density(std::size_t i) {
     sum += w * (record(j)[Fields::density_at] / material(j).density - 1.0 + parameters_.gravity.dot(x_ij) * per_c2);
     weight += w;
   }
-  particles_.density[i] = material(i).density * (1.0 + (weight > 0.0 ? sum / weight : 0.0));
+  return material(i).density * (1.0 + (sum > 0.0 ? sum / weight : 0.0));
+}
+
+/// From the records that the rates were summed with, before any of them changes.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::match_driven_densities() {
+  if (particles_.driven.empty()) return;
+  parallel_for_each(particles_.size(), [&](std::size_t i) {
+    if (is_driven(i)) particles_.density[i] = match_driven_density(i);
+  });
 }
 
 /// Lets go what has left its duct, takes out what has flown out and pours in what is due. The only place where the number of particles
