@@ -5,7 +5,7 @@
 #include "core/geometry/seeding.h"
 #include "io/height_field.h"
 #include "io/mesh_import.h"
-#include "scenes/check_vents.h"
+#include "scenes/place_vents.h"
 #include "scenes/collider_motion.h"
 #include "scenes/scene_reader.h"
 
@@ -339,7 +339,7 @@ SimulationSetup build_simulation(const Scene& scene) {
       for (const Vec3& x : moved(mesh, pose_at(motion, key.time)).vertices) scene_bounds.extend(x);
   }
   set_parameters(scene, scene_bounds, setup);
-  check_vents(scene, setup);
+  place_vents(scene, setup);
 
   const Box3& domain = setup.parameters.domain;
   for (std::size_t k = 0; k < setup.colliders.size(); ++k)

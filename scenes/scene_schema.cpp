@@ -135,7 +135,8 @@ void visit_collider(SchemaVisitor& v, ColliderSettings& s) {
 
 void visit_emitter(SchemaVisitor& v, EmitterSettings& s) {
   v.required_text({"material", "name of a [[material]]"}, s.material);
-  v.vector({"position_m", "middle of where it enters; it is driven for a kernel's support (three spacings) along the direction, then free"},
+  v.vector({"position_m", "middle of the vent, above the ground; what comes in there is driven for a kernel's support (three spacings) along the direction, then free. A vent near the "
+                          "ground is rooted in it"},
            s.position, any_number);
   v.vector({"direction", "of the flow, of any length"}, s.direction, any_number);
   v.required_number({"radius_m", "of the vent, at least a spacing"}, s.radius, positive);

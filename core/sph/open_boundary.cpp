@@ -78,7 +78,7 @@ EmitterLayers<Dim> compute_emitter_layers(const Emitter<Dim>& emitter, double pa
   layers.period = spacing / layers.speed;
   layers.depth = spacing * std::ceil(support_radius / spacing);
   layers.n_particles = std::llround(emitter.flow_rate * (emitter.end - emitter.start) / particle_volume);
-  layers.spacing = spacing;
+  layers.root = spacing * std::max(1.0, std::ceil(emitter.root / spacing));
   layers.sites = std::move(sites);
   return layers;
 }
@@ -95,8 +95,8 @@ template <int Dim>
 Vec<Dim> entered_position(const Emitter<Dim>& emitter, const EmitterLayers<Dim>& layers, std::int64_t k, double time) {
   const auto n_sites = static_cast<std::int64_t>(layers.sites.size());
   const double entered = emitter.start + (static_cast<double>(k / n_sites) + 0.5) * layers.period;
-  // A spacing behind the entry: on a floor there is never a gap under the last layer that others could get into.
-  const double along = (time - entered) * layers.speed - layers.spacing;
+  // Behind the entry: on the ground there is never a gap under the last layer that others could get into.
+  const double along = (time - entered) * layers.speed - layers.root;
   return emitter.position + layers.sites[static_cast<std::size_t>(k % n_sites)] + along * emitter.direction;
 }
 

@@ -1,7 +1,7 @@
 #pragma once
 // Where particles come in and go out while a simulation runs (docs/decisions/0012-emitters.md).
 //
-// A vent is a short duct of circular section. Layers of a square lattice come in a spacing behind its entry, one spacing apart, and are driven
+// A vent is a short duct of circular section. Layers of a square lattice come in at its root behind its entry, one spacing apart, and are driven
 // through it with the velocity that the flow rate asks for; where they leave it they are free. So what is free has its support full of
 // particles that move as it does, and none appears beside it.
 
@@ -18,6 +18,7 @@ struct Emitter {
   Vec<Dim> position = Vec<Dim>::Zero();    ///< middle of the entry [m]
   Vec<Dim> direction = Vec<Dim>::Unit(0);  ///< of the flow, unit
   double radius = 0.0;                     ///< of the section [m]
+  double root = 0.0;                       ///< how far behind the entry layers come in, in the ground perhaps; a spacing at least [m]
   double flow_rate = 0.0;                  ///< [m^Dim/s]
   double start = 0.0;                      ///< when the flow enters, and [s]
   double end = 0.0;                        ///< when it stops entering; what is in the duct still leaves it
@@ -31,7 +32,7 @@ struct EmitterLayers {
   std::vector<Vec<Dim>> sites;  ///< of a layer, from `position` [m], those nearest to the axis first
   double speed = 0.0;           ///< flow rate over the section of the sites [m/s]
   double period = 0.0;          ///< from one layer to the next: a spacing at that speed [s]
-  double spacing = 0.0;         ///< of the lattice [m]
+  double root = 0.0;            ///< as the emitter's, in whole spacings [m]
   double depth = 0.0;           ///< length of the duct from `position` on [m]: whole spacings, at least the kernel's support
   std::int64_t n_particles = 0;  ///< in all: the poured volume over that of a particle, rounded
 };

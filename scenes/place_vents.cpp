@@ -1,4 +1,4 @@
-#include "scenes/check_vents.h"
+#include "scenes/place_vents.h"
 
 #include "core/error.h"
 #include "core/sph/kernel.h"
@@ -53,9 +53,52 @@ void refuse_bodies_in_duct(const Emitter<3>& emitter, const EmitterLayers<3>& la
   }
 }
 
+/// Height of the ground that `x` is under, or nothing.
+std::optional<double> ground_over(const Scene& scene, const SimulationSetup& setup, std::size_t collider, const Vec3& x) {
+  if (scene.colliders[collider].mesh != "ground") return ground_above(setup.colliders[collider], x);
+  const double ground = scene.colliders[collider].ground_height;
+  return ground > x[1] ? std::optional(ground) : std::nullopt;
+}
+
+void refuse_vent_in_ground(const Scene& scene, const SimulationSetup& setup, const std::vector<Vec3>& places, const std::string& path) {
+  for (std::size_t k = 0; k < setup.colliders.size(); ++k) {
+    double deepest = 0.0, surface = 0.0;
+    Vec3 where = Vec3::Zero();
+    for (const Vec3& x : places) {
+      const auto above = ground_over(scene, setup, k, x);
+      if (!above || !(*above - x[1] > deepest)) continue;
+      deepest = *above - x[1];
+      surface = *above;
+      where = x;
+    }
+    if (deepest > 0.0)
+      fail("{}.position_m: the vent is in collider {} (\"{}\"): at x = {:.4g}, z = {:.4g} it is at y = {:.6g} m, and the ground there at {:.6g} m; "
+           "raise it by {:.3g} m, or take the collider's upper faces away if it is a container",
+           path, k, scene.colliders[k].mesh, where[0], where[2], where[1], surface, deepest);
+  }
+}
+
+/// How far behind the entry every site that has ground behind it is in that: on ground as steep as 45 degrees the search goes far enough.
+double find_root(const Scene& scene, const SimulationSetup& setup, const Emitter<3>& emitter, const EmitterLayers<3>& layers) {
+  double root = 0.0;
+  for (const Vec3& site : layers.sites) {
+    const auto buried = [&](double back) {
+      for (std::size_t k = 0; k < setup.colliders.size(); ++k)
+        if (ground_over(scene, setup, k, emitter.position + site - back * emitter.direction)) return true;
+      return false;
+    };
+    for (double back = 0.0; back <= 2.0 * emitter.radius; back += setup.spacing) {
+      if (!buried(back)) continue;
+      root = std::max(root, back + setup.spacing);
+      break;
+    }
+  }
+  return root;
+}
+
 }  // namespace
 
-void check_vents(const Scene& scene, const SimulationSetup& setup) {
+void place_vents(const Scene& scene, SimulationSetup& setup) {
   const SolverParameters<3>& p = setup.parameters;
   for (std::size_t e = 0; e < p.emitters.size(); ++e) {
     const std::string path = fmt::format("emitter.{}", e);
@@ -66,23 +109,8 @@ void check_vents(const Scene& scene, const SimulationSetup& setup) {
       fail("{}: {}", path, error.what());
     }
     refuse_bodies_in_duct(p.emitters[e], layers, setup, path);
-    const std::vector<Vec3> places = duct_sites(p.emitters[e], layers, setup.spacing);
-    for (std::size_t k = 0; k < setup.colliders.size(); ++k) {
-      const bool is_ground = scene.colliders[k].mesh == "ground";
-      double deepest = 0.0, surface = 0.0;
-      Vec3 where = Vec3::Zero();
-      for (const Vec3& x : places) {
-        const auto above = is_ground ? std::optional(scene.colliders[k].ground_height) : ground_above(setup.colliders[k], x);
-        if (!above || !(*above - x[1] > deepest)) continue;
-        deepest = *above - x[1];
-        surface = *above;
-        where = x;
-      }
-      if (deepest > 0.0)
-        fail("{}.position_m: the vent is in collider {} (\"{}\"): at x = {:.4g}, z = {:.4g} it is at y = {:.6g} m, and the ground there at {:.6g} m; "
-             "raise it by {:.3g} m, or take the collider's upper faces away if it is a container",
-             path, k, scene.colliders[k].mesh, where[0], where[2], where[1], surface, deepest);
-    }
+    refuse_vent_in_ground(scene, setup, duct_sites(p.emitters[e], layers, setup.spacing), path);
+    setup.parameters.emitters[e].root = find_root(scene, setup, p.emitters[e], layers);
   }
 }
 
