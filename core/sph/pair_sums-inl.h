@@ -24,19 +24,25 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   const PairKernel kernel(h);
   constexpr std::size_t lanes = pair_lanes<Real>;
   using Fields = PairFields<Dim, Real>;
-  [[maybe_unused]] const bool conductivity_varies = !fields.conductivity.empty();
+  [[maybe_unused]] const auto least_balance = hn::Set(d, Real(0.2)), most_balance = hn::Set(d, Real(1.8));
+  [[maybe_unused]] const auto one = hn::Set(d, Real(1)), least_sum = hn::Set(d, Real(1e-30));
   for (std::size_t i = begin; i < end; ++i) {
     auto density_rate = hn::Zero(d);
     auto heat = hn::Zero(d);
+    auto moment_trace = hn::Zero(d);
     Simd<Real> velocity_moment[Dim * Dim];
     Simd<Real> position_moment[Dim * (Dim + 1) / 2];
+    Simd<Real> heat_imbalance[Dim];
     Simd<Real> xsph[Dim];
     for (auto& m : velocity_moment) m = hn::Zero(d);
     for (auto& m : position_moment) m = hn::Zero(d);
+    for (auto& x : heat_imbalance) x = hn::Zero(d);
     for (auto& x : xsph) x = hn::Zero(d);
 
     const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
     const auto density_i = hn::Set(d, motion_i[Fields::density_at]);
+    [[maybe_unused]] const Real* heat_i = nullptr;
+    if constexpr (with_heat) heat_i = fields.heat.data() + i * Fields::heat_stride;
     const std::int32_t* row = lists.index.data() + lists.begin[i];
     const std::size_t n = lists.padded[i];
     for (std::size_t k = 0; k < n; k += lanes) {
@@ -46,12 +52,13 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
       const auto f = kernel.gradient_over_r(r2);
       const auto volume_f = hn::Mul(pair.volume, f);
       density_rate = hn::MulAdd(hn::Mul(pair.density, volume_f), dot<Dim, Real>(v_ij, x_ij), density_rate);
-      if constexpr (with_stress) {
+      if constexpr (with_stress || with_heat) {
         // v_j - v_i = -v_ij and x_j - x_i = -x_ij: one sign for all.
         for (int b = 0; b < Dim; ++b) {
           const auto weighted = hn::Mul(volume_f, x_ij[b]);
-          for (int a = 0; a < Dim; ++a)
-            velocity_moment[a * Dim + b] = hn::NegMulAdd(v_ij[a], weighted, velocity_moment[a * Dim + b]);
+          if constexpr (with_stress)
+            for (int a = 0; a < Dim; ++a)
+              velocity_moment[a * Dim + b] = hn::NegMulAdd(v_ij[a], weighted, velocity_moment[a * Dim + b]);
           for (int a = 0; a <= b; ++a) {
             auto& moment = position_moment[a == b ? a : Dim - 1 + a + b];
             moment = hn::NegMulAdd(x_ij[a], weighted, moment);
@@ -59,13 +66,24 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
         }
       }
       if constexpr (with_heat) {
-        const auto t_ij = hn::Sub(hn::Set(d, fields.temperature[i]), load_scalar(fields.temperature, row + k));
-        auto conducted = hn::Mul(volume_f, t_ij);
-        if (conductivity_varies) {
-          const auto l_j = load_scalar(fields.conductivity, row + k);
-          conducted = hn::Div(hn::Mul(conducted, hn::Add(l_j, l_j)), hn::Add(hn::Set(d, fields.conductivity[i]), l_j));
+        Simd<Real> heat_j[Fields::heat_stride];
+        load_records<Fields::n_heat_fields, Fields::heat_stride>(fields.heat.data(), row + k, heat_j);
+        auto along_i = hn::Mul(x_ij[0], hn::Set(d, heat_i[Fields::balance_at]));
+        auto along_j = hn::Mul(x_ij[0], heat_j[Fields::balance_at]);
+        for (int a = 1; a < Dim; ++a) {
+          along_i = hn::MulAdd(x_ij[a], hn::Set(d, heat_i[Fields::balance_at + a]), along_i);
+          along_j = hn::MulAdd(x_ij[a], heat_j[Fields::balance_at + a], along_j);
         }
-        heat = hn::Add(conducted, heat);
+        const auto balance = hn::Min(hn::Max(hn::Add(one, hn::Sub(along_i, along_j)), least_balance), most_balance);
+        const auto balanced_f = hn::Mul(volume_f, balance);
+        moment_trace = hn::NegMulAdd(balanced_f, r2, moment_trace);
+        const auto imbalance = hn::NegMulAdd(volume_f, along_j, volume_f);
+        for (int a = 0; a < Dim; ++a) heat_imbalance[a] = hn::MulAdd(imbalance, x_ij[a], heat_imbalance[a]);
+        const auto t_ij = hn::Sub(hn::Set(d, heat_i[0]), heat_j[0]);
+        const auto l_j = heat_j[Fields::conductivity_at];
+        const auto l_sum = hn::Max(hn::Add(hn::Set(d, heat_i[Fields::conductivity_at]), l_j), least_sum);
+        const auto trace_sum = hn::Add(hn::Set(d, heat_i[Fields::moment_trace_at]), heat_j[Fields::moment_trace_at]);
+        heat = hn::Add(hn::Div(hn::Mul(hn::Mul(balanced_f, t_ij), l_j), hn::Mul(l_sum, trace_sum)), heat);
       }
       if constexpr (with_xsph) {
         const auto mass = hn::Mul(pair.volume, pair.density);
@@ -76,11 +94,16 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
 
     RateSums<Dim, Real>& out = sums[i];
     out.density_rate = sum_lanes<Real>(density_rate);
-    if constexpr (with_stress) {
+    if constexpr (with_stress)
       for (int a = 0; a < Dim * Dim; ++a) out.velocity_moment[a] = sum_lanes<Real>(velocity_moment[a]);
+    if constexpr (with_stress || with_heat)
       for (int a = 0; a < Dim * (Dim + 1) / 2; ++a) out.position_moment[a] = sum_lanes<Real>(position_moment[a]);
+    if constexpr (with_heat) {
+      // Twice, and the halves of both means.
+      out.heat = 8 * sum_lanes<Real>(heat);
+      out.moment_trace = sum_lanes<Real>(moment_trace) / Dim;
+      for (int a = 0; a < Dim; ++a) out.heat_imbalance[a] = sum_lanes<Real>(heat_imbalance[a]);
     }
-    if constexpr (with_heat) out.heat = 2 * sum_lanes<Real>(heat);
     if constexpr (with_xsph)
       for (int a = 0; a < Dim; ++a) out.xsph[a] = 2 * sum_lanes<Real>(xsph[a]);
   }

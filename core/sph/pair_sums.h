@@ -43,11 +43,14 @@ struct PairFields {
   }
   static constexpr int hourglass_at = 1 + Dim * Dim;
   static constexpr int force_stride(const PairTerms& terms) { return force_stride(terms.stress, terms.hourglass); }
+  /// Temperature above a reference [K], conductivity over c_p relative to the scene's largest [-], and of the pass
+  /// before the moment trace theta [-] and the balance lambda [1/m] (core/sph/heat_balance.h).
+  static constexpr int n_heat_fields = 3 + Dim, heat_stride = padded_record(n_heat_fields);
+  static constexpr int conductivity_at = 1, moment_trace_at = 2, balance_at = 3;
 
   std::vector<Real> motion;       ///< n records of motion_stride
   std::vector<Real> force;        ///< n records of force_stride
-  std::vector<Real> temperature;  ///< [K] above a reference
-  std::vector<Real> conductivity;  ///< rho0 k, over c_p [kg/(m s)]; empty where all materials have the same
+  std::vector<Real> heat;         ///< n records of heat_stride, of scenes with heat
   std::vector<Real> pressure;     ///< [Pa], for core/sph/pressure_sums.h
 };
 
@@ -56,10 +59,15 @@ template <int Dim, typename Real>
 struct RateSums {
   Real density_rate;                            ///< sum m_j v_ij . grad_w_ij  [P 4-37]
   std::array<Real, Dim * Dim> velocity_moment;  ///< sum V_j (v_j - v_i) (x) grad_w_ij, row-major (bare velocity gradient)
-  std::array<Real, Dim*(Dim + 1) / 2> position_moment;  ///< sum V_j (x_j - x_i) (x) grad_w_ij  [Bonet & Lok 1999]
-  /// 2 sum V_j (T_i - T_j) x_ij.grad_w_ij / r^2, finite at r = 0  [P 6-9, corrected]; where conductivities l differ, each pair times
-  /// 2 l_j/(l_i + l_j), so that l_i times it has their harmonic mean  [Cleary & Monaghan 1999]
+  std::array<Real, Dim*(Dim + 1) / 2>
+      position_moment;  ///< sum V_j (x_j - x_i) (x) grad_w_ij  [Bonet & Lok 1999]; of stress or heat
+  /// 2 sum V_j (T_i - T_j) F b_ij / theta_ij, finite at r = 0  [P 6-9, corrected], with the balance b_ij = 1 +
+  /// x_ij.(lambda_i - lambda_j), held within [0.2, 1.8], and the mean theta_ij of the moment traces
+  /// (core/sph/heat_balance.h); where conductivities l differ, each pair times 2 l_j/(l_i + l_j), so that l_i times it
+  /// has their harmonic mean  [Cleary & Monaghan 1999]
   Real heat;
+  Real moment_trace;                            ///< theta = - sum V_j r^2 F b_ij / Dim
+  std::array<Real, Dim> heat_imbalance;         ///< sum V_j F x_ij (1 - x_ij.lambda_j) [1/m]
   std::array<Real, Dim> xsph;                   ///< sum 2 m_j/(rho_i + rho_j) (v_j - v_i) W_ij  [P 6-16]
 };
 

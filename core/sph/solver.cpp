@@ -55,10 +55,7 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
   terms_.pair.kernel = parameters_.kernel;
   for (const Material& m : materials_) {
     if (!inviscid(m.rheology)) terms_.pair.stress = true;
-    if (!m.heat) continue;
-    terms_.pair.heat = true;
-    const Material& first = materials_.front();
-    if (first.heat && m.density * m.heat->diffusivity != first.density * first.heat->diffusivity) terms_.conductivity_varies = true;
+    if (m.heat) terms_.pair.heat = true;
   }
   terms_.pair.xsph = parameters_.xsph > 0.0;
   for (int a = 0; a < Dim; ++a) terms_.periodic = terms_.periodic || is_periodic(parameters_.period, a);
@@ -110,6 +107,7 @@ void Solver<Dim, Real>::resize_derived() {
 template <int Dim, typename Real>
 void Solver<Dim, Real>::prepare(double time) {
   colliders_.place_at(time);
+  if (terms_.pair.heat) heat_balance_.assign(particles_.size(), {});
   search_neighbours();
   if (walls_) walls_->update(colliders_, particles_.position);
   pack_motion(particles_.velocity);
@@ -162,6 +160,7 @@ void Solver<Dim, Real>::search_neighbours() {
   const auto order = compute_cell_order<Dim>(particles_.position, particles_.id, radius);
   for_each_array(particles_, [&](auto& values) { reorder(values, order); });
   reorder(transport_, order);
+  reorder(heat_balance_, order);
   // The rates of the last step look half a kick ahead (pack_gas), or say what gradient balances them (pack_gradients).
   if (terms_.gas || terms_.diffusion) reorder(acceleration_, order);
   if (terms_.gas) reorder(energy_rate_, order);
@@ -259,7 +258,8 @@ void Solver<Dim, Real>::apply_wall_rates(const WallNeighbour<Dim>& wall) {
   Vec<Dim> velocity;  // the one that the pair sums were made with
   for (int a = 0; a < Dim; ++a) velocity[a] = fields_.motion[i * Fields::motion_stride + Fields::velocity_at + a];
   accumulate_wall_rates<Dim, Real>(wall, colliders_, terms_.pair, velocity, particles_.density[i],
-                                   terms_.pair.heat ? particles_.temperature[i] : 0.0, rates_[i]);
+                                   terms_.pair.heat ? particles_.temperature[i] : 0.0,
+                                   terms_.pair.heat ? heat_balance_[i].moment_trace : 1.0, rates_[i]);
 }
 
 /// With dt = 0 nothing advances, but the stress of a law without memory and the XSPH correction follow from the state.
@@ -272,6 +272,7 @@ void Solver<Dim, Real>::integrate_rates(double dt) {
     const Material& m = material(i);
     // rho c_p dT/dt = div(c_p rho0 k grad T), one c_p: the factor rho0/rho makes the exchange symmetric, so that sum m T is kept.
     if (m.heat && !is_driven(i)) particles_.temperature[i] += dt * m.heat->diffusivity * m.density / particles_.density[i] * rate.heat;
+    if (terms_.pair.heat) heat_balance_[i] = balance_heat<Dim, Real>(rate);
     Mat<Dim> corrected_stress = Mat<Dim>::Zero();
     if (terms_.pair.stress) corrected_stress = integrate_stress(i, dt);
     if (parameters_.density == DensityForm::continuity && !is_driven(i))

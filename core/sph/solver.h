@@ -3,6 +3,7 @@
 
 #include "core/sph/collision.h"
 #include "core/sph/equation_of_state.h"
+#include "core/sph/heat_balance.h"
 #include "core/sph/material.h"
 #include "core/sph/open_boundary.h"
 #include "core/sph/pair_sums.h"
@@ -58,7 +59,6 @@ struct SolverTerms {
   bool periodic = false;  ///< some axis repeats
   bool gas = false;       ///< an ideal gas: particles carry internal energy
   bool diffusion = false;  ///< density diffusion
-  bool conductivity_varies = false;  ///< between materials
 };
 
 /// Advances particles in time by leap-frog (kick-drift-kick). Real (float or double) is what the pair loops compute in; the state is
@@ -99,6 +99,7 @@ class Solver {
   /// Of the neighbour lists [m].
   double list_reach() const { return (kernel_kappa(parameters_.kernel) + parameters_.skin) * parameters_.smoothing_length; }
   void search_neighbours();
+  void pack_heat(std::size_t i, double largest_conductivity, Real* record) const;
   void pack_motion(const std::vector<Vec<Dim>>& velocity);
   void pack_gas(std::size_t i, double dt);
   void pack_gradients();
@@ -156,6 +157,7 @@ class Solver {
   std::vector<Real> packed_gradient_;                           ///< the same for the pair loops
   std::vector<Real> diffusion_sums_;
   std::vector<RateSums<Dim, Real>> rates_;
+  std::vector<HeatBalance<Dim>> heat_balance_;  ///< empty without heat
   std::vector<std::array<Real, Dim>> force_sums_;
   std::vector<Vec<Dim>> acceleration_;
   std::vector<Real> energy_rate_;  ///< of an ideal gas [W/kg], or empty

@@ -7,16 +7,31 @@
 namespace smelt {
 
 template <int Dim, typename Real>
+void Solver<Dim, Real>::pack_heat(std::size_t i, double largest_conductivity, Real* record) const {
+  using Fields = PairFields<Dim, Real>;
+  const Material& m = material(i);
+  // Relative to the melting range, where single precision is needed most.
+  record[0] =
+      static_cast<Real>(particles_.temperature[i] - (materials_.front().heat ? materials_.front().heat->cold : 0.0));
+  const double conductivity = m.heat ? m.density * m.heat->diffusivity : 0.0;
+  record[Fields::conductivity_at] =
+      static_cast<Real>(largest_conductivity > 0.0 ? conductivity / largest_conductivity : 0.0);
+  record[Fields::moment_trace_at] = static_cast<Real>(heat_balance_[i].moment_trace);
+  for (int a = 0; a < Dim; ++a) record[Fields::balance_at + a] = static_cast<Real>(heat_balance_[i].lambda[a]);
+}
+
+template <int Dim, typename Real>
 void Solver<Dim, Real>::pack_motion(const std::vector<Vec<Dim>>& velocity) {
   using Fields = PairFields<Dim, Real>;
   const std::size_t n = particles_.size();
   const std::size_t n_records = n + images_.size();
   fields_.motion.resize(n_records * Fields::motion_stride);
-  if (terms_.pair.heat) fields_.temperature.resize(n_records);
-  if (terms_.conductivity_varies) fields_.conductivity.resize(n_records);
+  if (terms_.pair.heat) fields_.heat.resize(n_records * Fields::heat_stride);
   const bool with_pressure = walls_ || terms_.diffusion;
   if (with_pressure) fields_.pressure.resize(n_records);
-  const double reference = materials_.front().heat ? materials_.front().heat->cold : 0.0;
+  double largest_conductivity = 0.0;
+  for (const Material& m : materials_)
+    if (m.heat) largest_conductivity = std::max(largest_conductivity, m.density * m.heat->diffusivity);
   parallel_for_each(n, [&](std::size_t i) {
     Real* record = fields_.motion.data() + i * Fields::motion_stride;
     const Vec<Dim> x = particles_.position[i] - origin_;
@@ -24,10 +39,7 @@ void Solver<Dim, Real>::pack_motion(const std::vector<Vec<Dim>>& velocity) {
     for (int a = 0; a < Dim; ++a) record[Fields::velocity_at + a] = static_cast<Real>(velocity[i][a]);
     record[Fields::volume_at] = static_cast<Real>(mass(i) / particles_.density[i]);
     record[Fields::density_at] = static_cast<Real>(particles_.density[i]);
-    // Relative to the melting range, where single precision is needed most.
-    if (terms_.pair.heat) fields_.temperature[i] = static_cast<Real>(particles_.temperature[i] - reference);
-    if (terms_.conductivity_varies)
-      fields_.conductivity[i] = static_cast<Real>(material(i).density * material(i).heat->diffusivity);
+    if (terms_.pair.heat) pack_heat(i, largest_conductivity, fields_.heat.data() + i * Fields::heat_stride);
     if (with_pressure) fields_.pressure[i] = static_cast<Real>(pressure(i));
   });
   copy_motion_to_images();
@@ -44,8 +56,9 @@ void Solver<Dim, Real>::copy_motion_to_images() {
     // From the state, as its source's: shifting the rounded record would round it twice.
     const Vec<Dim> x = particles_.position[source] + images_.shift[k] - origin_;
     for (int a = 0; a < Dim; ++a) record[a] = static_cast<Real>(x[a]);
-    if (terms_.pair.heat) fields_.temperature[n + k] = fields_.temperature[source];
-    if (terms_.conductivity_varies) fields_.conductivity[n + k] = fields_.conductivity[source];
+    if (terms_.pair.heat)
+      std::copy_n(fields_.heat.data() + source * Fields::heat_stride, Fields::heat_stride,
+                  fields_.heat.data() + (n + k) * Fields::heat_stride);
     if (!fields_.pressure.empty()) fields_.pressure[n + k] = fields_.pressure[source];
   });
 }

@@ -21,11 +21,14 @@ Vec<Dim> held_by_wall(const Vec<Dim>& vector, const Vec<Dim>& normal, const Cont
 ///   velocity_moment  + sum stretch P (v - u) (x) n                (v_w - v = P (v - u) (n.y)/d in the solid, and
 ///                    + sum (1 - slip) Omega (Gamma I - first (x) n)      (1 - slip) Omega y: what turns with the wall is not sheared)
 ///   position_moment  + int y (x) grad_w dV
-///   heat             - 2 sum (T - T_wall) A/d                     (T_w - T = (T - T_wall) (n.y)/d), where the wall has a temperature.
+///   heat             - 2 sum (T - T_wall) A/d / theta             (T_w - T = (T - T_wall) (n.y)/d), where the wall has a temperature,
+///   moment_trace     + tr int y (x) grad_w dV / Dim, and
+///   heat_imbalance   - sum A n, of such walls alone: at others support is missing,
+/// with theta [-] the particle's moment trace of the pass before.
 template <int Dim, typename Real>
 void accumulate_wall_rates(const WallNeighbour<Dim>& wall, const Colliders<Dim>& colliders, const PairTerms& terms,
-                           const Vec<Dim>& v, double rho, double temperature, RateSums<Dim, Real>& sums) {
-  double density_rate = 0.0, heat = 0.0;
+                           const Vec<Dim>& v, double rho, double temperature, double theta, RateSums<Dim, Real>& sums) {
+  double density_rate = 0.0, heat = 0.0, solid = 0.0, conducting = 0.0;
   Mat<Dim> velocity_moment = Mat<Dim>::Zero();
   for (const WallContact<Dim>& contact : wall.contacts) {
     const PlacedObstacle<Dim>& placed = colliders.placed()[contact.obstacle];
@@ -37,13 +40,19 @@ void accumulate_wall_rates(const WallNeighbour<Dim>& wall, const Colliders<Dim>&
       const Mat<Dim> moment = contact.solid * Mat<Dim>::Identity() - contact.first * contact.normal.transpose();
       velocity_moment += (1.0 - obstacle.response.friction) * placed.twist.spin * moment;
     }
-    if (terms.heat && obstacle.temperature) heat -= 2.0 * (temperature - *obstacle.temperature) * contact.conductance;
+    solid += contact.solid;
+    if (!terms.heat || !obstacle.temperature) continue;
+    heat -= 2.0 * (temperature - *obstacle.temperature) * contact.conductance / theta;
+    conducting += contact.solid;
+    for (int a = 0; a < Dim; ++a) sums.heat_imbalance[a] -= static_cast<Real>(contact.area * contact.normal[a]);
   }
   sums.density_rate += static_cast<Real>(density_rate);
   if (terms.heat) sums.heat += static_cast<Real>(heat);
-  if (!terms.stress) return;
-  for (int a = 0; a < Dim; ++a)
-    for (int b = 0; b < Dim; ++b) sums.velocity_moment[a * Dim + b] += static_cast<Real>(velocity_moment(a, b));
+  if (conducting > 0.0) sums.moment_trace += static_cast<Real>(conducting / solid * wall.moment.trace() / Dim);
+  if (terms.stress)
+    for (int a = 0; a < Dim; ++a)
+      for (int b = 0; b < Dim; ++b) sums.velocity_moment[a * Dim + b] += static_cast<Real>(velocity_moment(a, b));
+  if (!terms.stress && !terms.heat) return;
   const Symmetric<Dim> moment = to_symmetric<Dim>(wall.moment);
   for (int k = 0; k < n_symmetric<Dim>; ++k) sums.position_moment[k] += static_cast<Real>(moment[k]);
 }

@@ -9,36 +9,57 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <utility>
 #include <vector>
 
 namespace smelt {
 namespace {
 
-constexpr double diffusivity = 0.1, density = 1000.0, cold = 300.0;
+constexpr double diffusivity = 0.1, density = 1000.0, cold = 300.0, width = 0.5;
 
-/// A strip 2 m long and 1 m wide, one kelvin warmer for x < 0, at rest: density is at rest, so nothing moves.
-Solver<2, double> make_strip(double spacing, double h_over_spacing, double jitter) {
-  Particles<2> p = make_block<2>({Vec<2>(-1.0, -0.5), Vec<2>(1.0, 0.5)}, spacing, density, jitter);
-  for (const auto& x : p.position) p.temperature.push_back(x[0] < 0.0 ? cold + 1.0 : cold);
+double start_temperature(const Vec<2>& x) {
+  return x[0] < 0.0 ? cold + 1.0 : cold;
+}
+
+/// A strip 2 m long that repeats after half a metre across, one kelvin warmer for x < 0, at rest: density is at rest,
+/// so nothing moves. The lattice's jitter depends on `seed`.
+Solver<2, double> make_strip(double spacing, double h_over_spacing, double jitter, int seed) {
+  Particles<2> p = make_block<2>({Vec<2>(-1.0, 0.0), Vec<2>(1.0, width)}, spacing, density);
+  for (std::size_t i = 0; i < p.size(); ++i) {
+    const auto site = static_cast<std::int64_t>(i);
+    p.position[i] += jitter * spacing * Vec<2>(site_noise(site, seed, 0, 0), site_noise(site, seed, 0, 1));
+  }
+  for (const auto& x : p.position) p.temperature.push_back(start_temperature(x));
   auto parameters = make_parameters<2>(spacing, 1.0);
   parameters.smoothing_length = h_over_spacing * spacing;
+  parameters.period = {Vec<2>(0.0, 0.0), Vec<2>(0.0, width)};
   Material m = inviscid_material(density);
   m.heat = HeatProperties{diffusivity, cold, cold + 1.0};
   return {parameters, {m}, {}, std::move(p)};
 }
 
-/// Neither the long edges (natural zero flux, but half of the neighbours) nor the ends count.
-bool measured(const Vec<2>& x) {
-  return std::abs(x[0]) < 0.95 && std::abs(x[1]) < 0.2;
+/// The exact temperature above the cold side. The table's rows are its values; between them a straight line is off by
+/// more than the method.
+double exact(double x, double time) {
+  return 0.5 * std::erfc(x / (2.0 * std::sqrt(diffusivity * time)));
 }
 
-double l2_error(const Solver<2, double>& solver, const Reference& reference) {
+/// Over the particles away from the ends.
+double l2_error(const Solver<2, double>& solver, double time) {
   std::vector<double> differences;
   const auto& p = solver.particles();
   for (std::size_t i = 0; i < p.size(); ++i)
-    if (measured(p.position[i])) differences.push_back(p.temperature[i] - cold - reference.at(p.position[i][0]));
+    if (std::abs(p.position[i][0]) < 0.95)
+      differences.push_back(p.temperature[i] - cold - exact(p.position[i][0], time));
   return compute_norms(differences).l2;
+}
+
+TEST(HeatStep, TheTableIsTheErrorFunction) {
+  for (const auto& [name, time] : {std::pair{"heat_step_t0.05", 0.05}, std::pair{"heat_step_t0.2", 0.2}}) {
+    const Reference table = read_reference(name);
+    for (std::size_t k = 0; k < table.column[0].size(); ++k)
+      EXPECT_NEAR(table.column[1][k], exact(table.column[0][k], time), 1e-9);
+  }
 }
 
 struct Series {
@@ -46,15 +67,22 @@ struct Series {
   double order() const { return convergence_order(spacing, error); }
 };
 
-/// Runs to `time` at three resolutions; `h_over_spacing` of each in turn.
-Series run_series(const std::string& reference, double time, const std::vector<double>& h_over_spacing, double jitter) {
+/// Runs to `time` at three resolutions; `h_over_spacing` of each in turn. The error is the root mean square over
+/// several lattices, as one alone is more or less lucky.
+Series run_series(double time, const std::vector<double>& h_over_spacing, double jitter) {
+  constexpr int n_lattices = 8;
   Series series;
   for (std::size_t k = 0; k < h_over_spacing.size(); ++k) {
-    series.spacing.push_back((full_run() ? 0.025 : 0.05) / std::pow(2.0, k));
-    Solver<2, double> solver = make_strip(series.spacing.back(), h_over_spacing[k], jitter);
-    solver.prepare();
-    advance_by(solver, time);
-    series.error.push_back(l2_error(solver, read_reference(reference)));
+    series.spacing.push_back(0.05 / std::pow(2.0, k));
+    double squares = 0.0;
+    for (int seed = 0; seed < n_lattices; ++seed) {
+      Solver<2, double> solver = make_strip(series.spacing.back(), h_over_spacing[k], jitter, seed);
+      solver.prepare();
+      advance_by(solver, time);
+      const double error = l2_error(solver, time);
+      squares += error * error / n_lattices;
+    }
+    series.error.push_back(std::sqrt(squares));
   }
   return series;
 }
@@ -63,10 +91,10 @@ std::string resolution_of(const Series& series) {
   return fmt::format("spacings {} to {} m", series.spacing.front(), series.spacing.back());
 }
 
-void report_step(const char* reference, double time) {
+void report_step(double time) {
   // As scenes have it: h = 1.2 spacings. The order is no more than stated: see the test with a growing number of
   // neighbours.
-  const Series jittered = run_series(reference, time, {1.2, 1.2, 1.2}, 0.1);
+  const Series jittered = run_series(time, {1.2, 1.2, 1.2}, 0.1);
   report_row({.problem = fmt::format("heat: a step after {} s", time),
               .quantity = "temperature L2 / step (jitter 0.1 spacings)",
               .resolution = resolution_of(jittered),
@@ -76,68 +104,88 @@ void report_step(const char* reference, double time) {
 }
 
 TEST(HeatStep, Early) {
-  report_step("heat_step_t0.05", 0.05);
+  report_step(0.05);
 }
 TEST(HeatStep, Late) {
-  report_step("heat_step_t0.2", 0.2);
+  report_step(0.2);
 }
 
-// The order of the method itself: SPH converges only while the number of neighbours grows too, here as spacing^-0.8. The usual softening,
-// r^2 + 0.01 h^2 for r^2, would take a share off the diffusivity that no refinement gives back (orders 1.07 and 0.73). The smoothing error falls as h^2,
-// here spacing^1.2: less is wrong.
+// The order of the method itself: SPH converges only while the number of neighbours grows too, here as spacing^-0.6.
+// Undivided by theta the lattice takes a share off the diffusivity that no refinement gives back; unbalanced, the
+// jitter is an error of order 1.2 (with h as the root of the spacing 1.36 and 1.48); the usual softening, r^2 + 0.01
+// h^2 for r^2, takes another share off.
 TEST(HeatStep, OrderWithMoreNeighbours) {
-  for (const auto& [reference, time] : {std::pair{"heat_step_t0.05", 0.05}, std::pair{"heat_step_t0.2", 0.2}}) {
-    const Series series = run_series(reference, time, {1.3, 1.3 * std::pow(2.0, 0.4), 1.3 * std::pow(4.0, 0.4)}, 0.1);
+  for (const double time : {0.05, 0.2}) {
+    const Series series = run_series(time, {1.3, 1.3 * std::pow(2.0, 0.3), 1.3 * std::pow(4.0, 0.3)}, 0.1);
     report_row({.problem = fmt::format("heat: a step after {} s", time),
-                .quantity = "temperature L2 / step (jitter 0.1; h as spacing^0.6)",
+                .quantity = "temperature L2 / step (jitter 0.1; h as spacing^0.7)",
                 .resolution = resolution_of(series),
                 .error = series.error.back(),
                 .bar = 0.01,
                 .order = series.order(),
-                .least_order = 1.2});
+                .least_order = 1.5});
   }
 }
 
 /// What the strip's first moment says: d/dt of the integral of x T is the diffusivity times the step, whatever the
-/// profile's shape. Taken where the sums are whole, far from the long edges. `warmed` is T(t) - T(0) of each particle
-/// of `p`.
+/// profile's shape. `warmed` is T(t) - T(0) of each particle of `p`.
 double diffusivity_from_width(const Particles<2>& p, const std::vector<double>& warmed, double time) {
   double moment = 0.0, mass = 0.0;
   for (std::size_t i = 0; i < p.size(); ++i) {
-    if (std::abs(p.position[i][1]) >= 0.2) continue;
     moment += p.position[i][0] * warmed[i];
     mass += 1.0;
   }
   return 2.0 * moment / mass / time;  // the strip is 2 m long, the step 1 K high
 }
 
-double start_temperature(const Vec<2>& x) {
-  return x[0] < 0.0 ? cold + 1.0 : cold;
-}
-
-/// Explicit Euler for factor * sum V_j (T_i - T_j) x_ij.grad_w_ij / r^2, written from the text, pair by
+/// Explicit Euler for factor * sum V_j (T_i - T_j) F b_ij / theta_ij, written from core/sph/heat_balance.h pair by
 /// pair.
 std::vector<double> diffuse_by_hand(const Solver<2, double>& solver, double factor, double dt, int steps) {
   const auto& p = solver.particles();
-  const double h = solver.parameters().smoothing_length, volume = solver.parameters().particle_volume;
-  const Kernel<2> kernel(h);
-  std::vector<double> now(p.size());
-  for (std::size_t i = 0; i < p.size(); ++i) now[i] = start_temperature(p.position[i]);
-  for (int n = 0; n < steps; ++n) {
+  const std::size_t n = p.size();
+  const Kernel<2> kernel(solver.parameters().smoothing_length);
+  struct Pair {
+    std::size_t i, j;
+    Vec<2> x;
+    double weight;  // V F
+  };
+  std::vector<Pair> pairs;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) {
+      Vec<2> x = p.position[i] - p.position[j];
+      x[1] = std::remainder(x[1], width);
+      const double r = x.norm();
+      if (j != i && r < kernel.support_radius())
+        pairs.push_back({i, j, x, solver.parameters().particle_volume * kernel.derivative(r) / r});
+    }
+  std::vector<double> now(n), theta(n, 1.0);
+  std::vector<Vec<2>> lambda(n, Vec<2>::Zero());
+  for (std::size_t i = 0; i < n; ++i) now[i] = start_temperature(p.position[i]);
+  for (int step = 0; step <= steps; ++step) {
+    const double advance = step == 0 ? 0.0 : dt;  // the preparation sweeps too
     const std::vector<double> before = now;
-    for (std::size_t i = 0; i < p.size(); ++i)
-      for (const std::int32_t j : solver.neighbours().row(i)) {
-        const double r = (p.position[i] - p.position[j]).norm();
-        const double slope = kernel.derivative(r) / r;
-        now[i] += dt * diffusivity * factor * volume * (before[i] - before[j]) * slope;
-      }
+    std::vector<double> trace(n, 0.0);
+    std::vector<Vec<2>> imbalance(n, Vec<2>::Zero());
+    std::vector<Mat<2>> moment(n, Mat<2>::Zero());
+    for (const auto& [i, j, x, weight] : pairs) {
+      const double balanced = weight * std::clamp(1.0 + x.dot(lambda[i] - lambda[j]), 0.2, 1.8);
+      now[i] += advance * diffusivity * factor * balanced * (before[i] - before[j]) / (0.5 * (theta[i] + theta[j]));
+      trace[i] -= 0.5 * balanced * x.squaredNorm();
+      imbalance[i] += weight * (1.0 - x.dot(lambda[j])) * x;
+      moment[i] -= weight * x * x.transpose();
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const double full = std::clamp((trace[i] - 0.8) / 0.1, 0.0, 1.0);
+      lambda[i] = full > 0.0 ? Vec<2>(full * moment[i].inverse() * imbalance[i]) : Vec<2>(Vec<2>::Zero());
+      theta[i] = std::max(trace[i], 0.25);
+    }
   }
   return now;
 }
 
 TEST(HeatStep, SpreadsAtTheRightRateOnlyWithTheFactorTwo) {
   constexpr double spacing = 0.025, time = 0.05;
-  Solver<2, double> solver = make_strip(spacing, 1.2, 0.1);
+  Solver<2, double> solver = make_strip(spacing, 1.2, 0.1, 0);
   solver.prepare();
   const int steps = 60;
   const double dt = time / steps;
@@ -171,7 +219,7 @@ TEST(HeatStep, SpreadsAtTheRightRateOnlyWithTheFactorTwo) {
 
 // Counted above the cold side, where the sum is 300 times smaller than sum m T and its rounding shows.
 TEST(HeatStep, KeepsThermalEnergy) {
-  Solver<2, double> solver = make_strip(0.025, 1.2, 0.2);
+  Solver<2, double> solver = make_strip(0.025, 1.2, 0.2, 0);
   // Unequal densities too: the exchange must be symmetric in what it carries, not in temperature.
   Particles<2> p = solver.particles();
   for (std::size_t i = 0; i < p.size(); ++i) p.density[i] *= 1.0 + 0.01 * site_noise(p.id[i], 0, 0, 0);

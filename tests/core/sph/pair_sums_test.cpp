@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -22,7 +23,14 @@ struct Pair {
     constexpr int lanes = pair_lanes<Real>;
     fields.motion.resize(2 * Fields::motion_stride);
     fields.force.resize(2 * Fields::force_stride(true));
-    fields.temperature = {Real(1), Real(3)};
+    fields.heat.assign(2 * Fields::heat_stride, Real(0));
+    for (int k = 0; k < 2; ++k) {
+      Real* record = fields.heat.data() + k * Fields::heat_stride;
+      record[0] = k == 0 ? Real(1) : Real(3);
+      record[Fields::conductivity_at] = k == 0 ? Real(1) : Real(0.6);
+      record[Fields::moment_trace_at] = k == 0 ? Real(0.5) : Real(1.1);
+      record[Fields::balance_at] = k == 0 ? Real(0.2) : Real(-0.3);
+    }
     for (int a = 0; a < Dim; ++a) {
       fields.motion[a] = static_cast<Real>(distance / std::sqrt(Dim));
       fields.motion[Fields::velocity_at + a] = Real(-1);
@@ -71,8 +79,12 @@ void expect_kernels_agree(double tolerance) {
       EXPECT_NEAR(sums[0].density_rate, 0.5 * 3.0 * approach * pair.f, tolerance * rate_scale);
       EXPECT_NEAR(sums[1].density_rate, 0.5 * 2.0 * approach * pair.f, tolerance * rate_scale);
       const double heat_scale = 10.0 * slope_scale / h;  // the quadratic's F peaks where r is some 0.1 h
-      // T_0 - T_1 = -2; the pair's own padding (r = 0) must add nothing.
-      EXPECT_NEAR(sums[0].heat, 2.0 * 0.5 * -2.0 * pair.f, tolerance * heat_scale);
+      // T_0 - T_1 = -2, the traces' mean 0.8, conductivities 1 and 0.6; the pair's own padding (r = 0) must add
+      // nothing.
+      const double x = pair.fields.motion[0], balance = std::clamp(1.0 + x * 0.5, 0.2, 1.8);
+      EXPECT_NEAR(sums[0].heat, 2.0 * 0.5 * -2.0 * pair.f * balance / 0.8 * (2.0 * 0.6 / 1.6), tolerance * heat_scale);
+      EXPECT_NEAR(sums[0].moment_trace, -0.5 * pair.r * pair.r * pair.f * balance / Dim, tolerance * heat_scale);
+      EXPECT_NEAR(sums[0].heat_imbalance[0], 0.5 * pair.f * x * (1.0 + 0.3 * x), tolerance * heat_scale);
       EXPECT_NEAR(sums[0].xsph[0], 2.0 * 0.5 * 3.0 / 5.0 * 3.0 * pair.w, tolerance * scalar.value(0.0));
 
       std::array<Real, Dim> acceleration[2];
