@@ -93,6 +93,7 @@ void Solver<Dim, Real>::resize_derived() {
   force_sums_.resize(n);
   rates_.resize(n);
   if (terms_.gas) energy_rate_.resize(n);
+  if (terms_.pair.heat) heat_balance_.resize(n);
   if (terms_.pair.xsph) transport_.resize(n, Vec<Dim>::Zero());
   if (terms_.pair.xsph) xsph_.resize(n, Vec<Dim>::Zero());
   if (walls_ || (terms_.diffusion && terms_.pair.stress)) {

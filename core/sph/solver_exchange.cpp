@@ -119,6 +119,7 @@ bool Solver<Dim, Real>::remove_outflow() {
   for_each_array(particles_, [&](auto& values) { keep_only(values, keep); });
   keep_only(acceleration_, keep);  // the first half of the next kick, and the drift after it
   keep_only(xsph_, keep);
+  keep_only(heat_balance_, keep);
   return true;
 }
 
