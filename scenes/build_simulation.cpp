@@ -1,12 +1,12 @@
 #include "scenes/build_simulation.h"
 
 #include "core/error.h"
-#include "core/geometry/inside.h"
 #include "core/geometry/seeding.h"
 #include "io/height_field.h"
 #include "io/mesh_import.h"
 #include "scenes/place_vents.h"
 #include "scenes/collider_motion.h"
+#include "scenes/prepare_colliders.h"
 #include "scenes/scene_reader.h"
 
 #include <algorithm>
@@ -46,11 +46,11 @@ TriangleMesh import_terrain(const std::filesystem::path& file, const TerrainSett
 }
 
 TriangleMesh import_placed(const Scene& scene, const std::string& name, const PlacementSettings& placement,
-                           const std::optional<TerrainSettings>& terrain = std::nullopt) {
+                           void (*validate)(const TriangleMesh&), const std::optional<TerrainSettings>& terrain = std::nullopt) {
   const std::filesystem::path file = find_mesh(scene, name);
   TriangleMesh mesh = is_height_field(file) ? import_terrain(file, terrain.value_or(TerrainSettings{})) : import_mesh(file);
   try {
-    validate_mesh(mesh);
+    validate(mesh);
     place(mesh, placement);
   } catch (const Error& error) {
     fail("{}: {}", file.string(), error.what());
@@ -208,16 +208,6 @@ double automatic_sound_speed(double expected_speed) {
   return 10.0 * expected_speed;
 }
 
-/// Whether a collider bounds a solid: closed, wound outward, and none of the fluid in it. A closed mesh around fluid is a container, whose
-/// sheet has two sides.
-bool is_solid(const TriangleMesh& mesh, const std::vector<Vec3>& particles) {
-  if (!compute_topology(mesh).closed() || !(compute_volume(mesh) > 0.0)) return false;
-  const Box3 bounds = compute_bounds(mesh);
-  const InsideTest inside(mesh, bounds.extent().maxCoeff() / 100.0);
-  std::vector<Crossing> crossings;
-  return std::none_of(particles.begin(), particles.end(), [&](const Vec3& x) { return inside.contains(x, crossings); });
-}
-
 Obstacle<3> to_obstacle(const ColliderSettings& s, const TriangleMesh& mesh) {
   Obstacle<3> obstacle;
   obstacle.response = {s.friction, s.restitution};
@@ -276,12 +266,12 @@ void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetu
 
 std::vector<TriangleMesh> import_placed_bodies(const Scene& scene) {
   std::vector<TriangleMesh> meshes;
-  for (const BodySettings& body : scene.bodies) meshes.push_back(import_placed(scene, body.mesh, body.placement));
+  for (const BodySettings& body : scene.bodies) meshes.push_back(import_placed(scene, body.mesh, body.placement, validate_mesh));
   return meshes;
 }
 
 TriangleMesh import_placed_collider(const Scene& scene, const ColliderSettings& collider) {
-  return import_placed(scene, collider.mesh, collider.placement, collider.terrain);
+  return import_placed(scene, collider.mesh, collider.placement, validate_surface, collider.terrain);
 }
 
 double count_poured(const SimulationSetup& setup, double seconds) {
@@ -310,8 +300,10 @@ SimulationSetup build_simulation(const Scene& scene) {
   refuse_bodies_under_ground(scene, bodies);
   refuse_bodies_outside_period(scene, to_period(scene), bodies);
   const std::vector<Seeds> seeds = seed_bodies(scene, bodies);
+  std::vector<std::size_t> first{0};  // particle of each body
   for (std::size_t k = 0; k < bodies.size(); ++k) {
     append_body(scene, k, bodies[k], seeds[k], setup.particles);
+    first.push_back(setup.particles.size());
     setup.body_volume += bodies[k].volume;
     setup.body_bounds.extend(bodies[k].bounds.lower);
     setup.body_bounds.extend(bodies[k].bounds.upper);
@@ -332,12 +324,12 @@ SimulationSetup build_simulation(const Scene& scene) {
     setup.obstacles.push_back(to_obstacle(collider, mesh));
     const Motion<3>& motion = setup.obstacles.back().motion;
     const TriangleMesh at_start = motion.still() ? mesh : moved(mesh, pose_at(motion, 0.0));
-    setup.obstacles.back().closed = is_solid(at_start, setup.particles.position);
     for (const Vec3& x : at_start.vertices) scene_bounds.extend(x);
     // The places that it is taken to.
     for (const Keyframe<3>& key : motion.keyframes)
       for (const Vec3& x : moved(mesh, pose_at(motion, key.time)).vertices) scene_bounds.extend(x);
   }
+  prepare_colliders(scene, first, setup);
   set_parameters(scene, scene_bounds, setup);
   place_vents(scene, setup);
 

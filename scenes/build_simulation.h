@@ -21,11 +21,11 @@ struct SimulationSetup {
   double body_volume = 0.0;                ///< of all bodies' meshes [m^3]
   Box3 body_bounds;                        ///< of all bodies' meshes [m]
   double expected_speed = 0.0;             ///< fastest, of a fall through the whole scene after the fastest start [m/s]
-  std::vector<std::string> warnings;       ///< what was mended in meshes
+  std::vector<std::string> warnings;       ///< what was mended in meshes, left out, or looks wrong
 };
 
-/// Imports, places, mends and fills the meshes. Throws Error with the mesh's file for those that cannot be used, and for bodies whose
-/// particles start inside an obstacle.
+/// Imports, places, mends and fills the meshes. Throws Error with the mesh's file for those that cannot be used, and for bodies
+/// that start under the ground or half in a vessel.
 SimulationSetup build_simulation(const Scene& scene);
 
 /// The obstacles as the solver wants them.

@@ -202,9 +202,9 @@ Wrapped wrap(const CgalMesh& mesh, double spacing) {
 
 }  // namespace
 
-void validate_mesh(const TriangleMesh& mesh) {
+void validate_surface(const TriangleMesh& mesh) {
   if (mesh.triangles.empty())
-    fail("the mesh has no triangles ({} vertices); a body needs a closed surface", mesh.vertices.size());
+    fail("the mesh has no triangles ({} vertices); a body needs a closed surface, a collider any", mesh.vertices.size());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     if (const Vec3& p = mesh.vertices[v]; !p.allFinite())
       fail("vertex {} of the mesh is ({}, {}, {}); coordinates must be finite numbers", v + 1, p.x(), p.y(), p.z());
@@ -215,8 +215,12 @@ void validate_mesh(const TriangleMesh& mesh) {
 
   const double width = compute_bounds(mesh).extent().norm();
   if (!(compute_area(mesh) > 1e-12 * width * width))
-    fail("the mesh has no area ({}, all degenerate); a body needs a closed surface",
+    fail("the mesh has no area ({}, all degenerate); a body needs a closed surface, a collider any",
          counted(mesh.triangles.size(), "face"));
+}
+
+void validate_mesh(const TriangleMesh& mesh) {
+  validate_surface(mesh);
   if (relative_thickness(mesh) < 1e-6)
     fail("the mesh is flat: all its vertices lie in one plane, so it bounds no volume; give it a thickness");
 }

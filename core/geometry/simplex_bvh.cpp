@@ -95,6 +95,42 @@ void SimplexBvh<Dim>::find_near(const Vec<Dim>& point, double radius, std::vecto
   }
 }
 
+template <int Dim>
+double SimplexBvh<Dim>::distance(const Vec<Dim>& point, double limit) const {
+  const Box<Dim>& bounds = index_->bounds;
+  if ((point.array() < bounds.lower.array() - limit).any() || (point.array() > bounds.upper.array() + limit).any()) return limit;
+  if constexpr (Dim == 3) {
+    struct Nearest {
+      const std::vector<Simplex<3>>& simplices;
+      Vec3 point;
+      double distance, rounding;
+    };
+    const double magnitude = std::max(bounds.lower.cwiseAbs().maxCoeff(), bounds.upper.cwiseAbs().maxCoeff());
+    Nearest nearest{simplices_, point, limit, 1e-6 * magnitude};
+    RTCPointQuery query{};
+    query.x = static_cast<float>(point[0]);
+    query.y = static_cast<float>(point[1]);
+    query.z = static_cast<float>(point[2]);
+    query.radius = static_cast<float>(1.0001 * limit + nearest.rounding);
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    const auto approach = [](RTCPointQueryFunctionArguments* arguments) {
+      auto& found = *static_cast<Nearest*>(arguments->userPtr);
+      const double distance = (found.point - closest_point<3>(found.point, found.simplices[arguments->primID])).norm();
+      if (!(distance < found.distance)) return false;
+      found.distance = distance;
+      arguments->query->radius = static_cast<float>(1.0001 * distance + found.rounding);
+      return true;  // the radius has shrunk
+    };
+    rtcPointQuery(index_->scene, &query, &context, approach, &nearest);
+    return nearest.distance;
+  } else {
+    double nearest = limit;
+    for (const Simplex<Dim>& simplex : simplices_) nearest = std::min(nearest, (point - closest_point<Dim>(point, simplex)).norm());
+    return nearest;
+  }
+}
+
 template class SimplexBvh<1>;
 template class SimplexBvh<2>;
 template class SimplexBvh<3>;

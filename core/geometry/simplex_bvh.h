@@ -24,6 +24,9 @@ class SimplexBvh {
   /// more.
   void find_near(const Vec<Dim>& point, double radius, std::vector<std::uint32_t>& found) const;
 
+  /// From `point` to the nearest simplex [m], to a rounding of Embree's floats never too much; `limit` [m] where none is nearer than that.
+  double distance(const Vec<Dim>& point, double limit) const;
+
  private:
   struct Index;
   std::vector<Simplex<Dim>> simplices_;

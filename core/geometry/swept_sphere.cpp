@@ -17,17 +17,17 @@ Vec<Dim> closest_on_segment(const Vec<Dim>& p, const Vec<Dim>& a, const Vec<Dim>
   return a + std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) * ab;
 }
 
-/// Smallest t in [0, 1] at which |offset + t direction| = radius, coming from outside.
+/// Smallest t in [0, 1] at which |offset + t direction| = radius, coming from outside. Measured from the point of closest approach: its
+/// distance is known to a rounding of |offset|, where the difference of squares in b^2 - a c would lose a short radius far away.
 template <typename Vector>
 std::optional<double> enter_ball(const Vector& offset, const Vector& direction, double radius) {
   const double a = direction.squaredNorm();
   const double b = offset.dot(direction);
-  const double c = offset.squaredNorm() - radius * radius;
   if (b >= 0.0 || a == 0.0) return std::nullopt;
-  const double discriminant = b * b - a * c;
-  if (discriminant < 0.0) return std::nullopt;
-  // The stable form of the smaller root: no difference of nearly equal numbers.
-  const double t = c / (-b + std::sqrt(discriminant));
+  const double nearest = -b / a;
+  const double half2 = radius * radius - (offset + nearest * direction).squaredNorm();
+  if (half2 < 0.0) return std::nullopt;
+  const double t = nearest - std::sqrt(half2 / a);
   if (t > 1.0) return std::nullopt;
   return std::max(t, 0.0);
 }
@@ -62,6 +62,18 @@ void sweep_edge(const Vec<Dim>& centre, const Vec<Dim>& displacement, double rad
   if (along >= 0.0 && along <= 1.0) keep_earlier<Dim>(best, *t, offset_across + *t * displacement_across);
 }
 
+/// a b - c d to the last bit or two, however much of it cancels (Kahan: the rounding of c d is added back).
+double difference_of_products(double a, double b, double c, double d) {
+  const double product = c * d;
+  return std::fma(a, b, -product) + std::fma(-c, d, product);
+}
+
+/// Normals of slivers have few digits left in a plain cross product.
+Vec3 exact_cross(const Vec3& a, const Vec3& b) {
+  return {difference_of_products(a[1], b[2], a[2], b[1]), difference_of_products(a[2], b[0], a[0], b[2]),
+          difference_of_products(a[0], b[1], a[1], b[0])};
+}
+
 bool inside_triangle(const Vec3& p, const Simplex<3>& t, const Vec3& normal) {
   for (int k = 0; k < 3; ++k)
     if ((t[(k + 1) % 3] - t[k]).cross(p - t[k]).dot(normal) < 0.0) return false;
@@ -70,19 +82,33 @@ bool inside_triangle(const Vec3& p, const Simplex<3>& t, const Vec3& normal) {
 
 void sweep_face(const Vec3& centre, const Vec3& displacement, double radius, const Simplex<3>& t,
                 std::optional<SweepContact<3>>& best) {
-  Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  Vec3 normal = exact_cross(t[1] - t[0], t[2] - t[0]);
   const double length = normal.norm();
   if (length == 0.0) return;
   normal /= length;
-  const double distance = (centre - t[0]).dot(normal);
+  const Vec3 offset = centre - t[0];
+  const double distance = offset.dot(normal);
   const double side = distance >= 0.0 ? 1.0 : -1.0;
   const double approach = -side * displacement.dot(normal);
   if (approach <= 0.0) return;
   // A sphere that touches may come out a few roundings deep here: that is contact now, not contact missed.
   const double gap = side * distance - radius;
-  const double time = gap < 0.0 && gap > -1e-9 * radius ? 0.0 : gap / approach;
+  const double rounding = 1e-9 * radius + 1e-15 * offset.norm();
+  const double time = gap < 0.0 && gap > -rounding ? 0.0 : gap / approach;
   if (time < 0.0 || time > 1.0) return;
   if (inside_triangle(centre + time * displacement, t, normal)) keep_earlier<3>(best, time, side * normal);
+}
+
+/// Whether the boxes of the simplex and of the moving sphere are apart: most of what a broad phase hands over.
+template <int Dim>
+bool boxes_are_apart(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius, const Simplex<Dim>& simplex) {
+  Vec<Dim> lower = simplex[0], upper = simplex[0];
+  for (int k = 1; k < Dim; ++k) {
+    lower = lower.cwiseMin(simplex[k]);
+    upper = upper.cwiseMax(simplex[k]);
+  }
+  const Vec<Dim> end = centre + displacement;
+  return (lower.array() > centre.cwiseMax(end).array() + radius).any() || (upper.array() < centre.cwiseMin(end).array() - radius).any();
 }
 
 }  // namespace
@@ -99,7 +125,7 @@ Vec<2> closest_point<2>(const Vec<2>& p, const Simplex<2>& segment) {
 
 template <>
 Vec3 closest_point<3>(const Vec3& p, const Simplex<3>& t) {
-  const Vec3 normal = (t[1] - t[0]).cross(t[2] - t[0]);
+  const Vec3 normal = exact_cross(t[1] - t[0], t[2] - t[0]);
   const double area2 = normal.squaredNorm();
   if (area2 > 0.0) {
     const Vec3 foot = p - (p - t[0]).dot(normal) / area2 * normal;
@@ -116,11 +142,13 @@ Vec3 closest_point<3>(const Vec3& p, const Simplex<3>& t) {
 template <int Dim>
 std::optional<SweepContact<Dim>> sweep_sphere(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius,
                                               const Simplex<Dim>& simplex) {
+  if (boxes_are_apart<Dim>(centre, displacement, radius, simplex)) return std::nullopt;
   // In contact at the start: what counts is whether it moves deeper.
   const Vec<Dim> from_obstacle = centre - closest_point<Dim>(centre, simplex);
   const double distance = from_obstacle.norm();
-  if (distance > 0.0 && distance <= radius) {
-    if (displacement.dot(from_obstacle) >= 0.0) return std::nullopt;
+  if (distance <= radius) {
+    // From a place on the obstacle itself every way leads out.
+    if (distance == 0.0 || displacement.dot(from_obstacle) >= 0.0) return std::nullopt;
     return SweepContact<Dim>{0.0, from_obstacle / distance};
   }
 

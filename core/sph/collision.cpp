@@ -1,5 +1,7 @@
 #include "core/sph/collision.h"
 
+#include "core/geometry/facet.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -66,19 +68,49 @@ void find_near(const Obstacles<Dim>& placed, const Vec<Dim>& position, double re
   }
 }
 
-/// Moves a sphere out of what it overlaps.
+/// Whether all of a facet is farther off than `distance` along some axis.
+template <int Dim>
+bool is_beyond(const Vec<Dim>& x, double distance, const Simplex<Dim>& facet) {
+  for (int axis = 0; axis < Dim; ++axis) {
+    bool above = true, below = true;
+    for (const Vec<Dim>& corner : facet) {
+      above = above && corner[axis] > x[axis] + distance;
+      below = below && corner[axis] < x[axis] - distance;
+    }
+    if (above || below) return true;
+  }
+  return false;
+}
+
+/// Moves a sphere out of what it overlaps, the nearest first, as far as its centre gets without passing another facet.
 template <int Dim>
 void push_out(const Obstacles<Dim>& obstacles, const Nearby& near, double radius, Vec<Dim>& position) {
   for (const auto& group : near.groups) {
     const PlacedObstacle<Dim>& placed = obstacles[group.obstacle];
+    const auto facet = [&](std::size_t k) -> const Simplex<Dim>& { return placed.bvh.simplices()[near.facets[k]]; };
     const double least = radius_at(placed, radius);
     Vec<Dim> local = placed.begin.to_rest(position);
     bool moved = false;
-    for (std::size_t k = group.begin; k < group.end; ++k) {
-      const Vec<Dim> out = local - closest_point<Dim>(local, placed.bvh.simplices()[near.facets[k]]);
-      const double distance = out.norm();
-      if (!(distance > 0.0 && distance < least)) continue;
-      local += (least - distance) / distance * out;
+    for (int pass = 0; pass < Colliders<Dim>::max_bounces; ++pass) {
+      double nearest = least;
+      std::size_t touched = group.end;
+      Vec<Dim> out = Vec<Dim>::Zero();
+      for (std::size_t k = group.begin; k < group.end; ++k) {
+        if (is_beyond<Dim>(local, nearest, facet(k))) continue;
+        const Vec<Dim> from = local - closest_point<Dim>(local, facet(k));
+        if (!(from.norm() < nearest)) continue;
+        nearest = from.norm();
+        touched = k;
+        out = from;
+      }
+      if (touched == group.end) break;
+      // From a place on the facet itself, to its front.
+      Vec<Dim> way = nearest > 0.0 ? Vec<Dim>((least - nearest) / nearest * out) : Vec<Dim>(least * facet_normal<Dim>(facet(touched)));
+      double share = 1.0;
+      for (std::size_t k = group.begin; k < group.end; ++k)
+        if (k != touched)
+          if (const auto hit = sweep_sphere<Dim>(local, way, Colliders<Dim>::squeezed * least, facet(k))) share = std::min(share, hit->time);
+      local += share * way;
       moved = true;
     }
     if (moved) position = placed.begin.to_world(local);
@@ -183,6 +215,7 @@ void Colliders<Dim>::add(Obstacle<Dim> obstacle) {
   for (const auto& facet : placed.bvh.simplices())
     for (const Vec<Dim>& corner : facet) placed.reach = std::max(placed.reach, (corner - placed.pivot).norm());
   max_slide_ = std::max(max_slide_, placed.obstacle.surface_velocity.norm());
+  max_girth_ = std::max(max_girth_, placed.obstacle.wall ? wall_guard : 1.0);
   placed_.push_back(std::move(placed));
 }
 
@@ -210,6 +243,14 @@ void Colliders<Dim>::place_at(double time) {
     p.acceleration = acceleration_at(p.obstacle.motion, time);
   }
   step_way_ = 0.0;
+}
+
+template <int Dim>
+double Colliders<Dim>::clearance(const Vec<Dim>& point, double limit) const {
+  double distance = limit;
+  for (const Placed& p : placed_)
+    if (!p.gone) distance = std::min(distance, p.bvh.distance(p.begin.to_rest(point), distance));
+  return distance;
 }
 
 template <int Dim>
@@ -264,7 +305,9 @@ bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, V
     const double leg_end = leg == n_legs ? 1.0 : static_cast<double>(leg) / n_legs;
     while (sphere.share < leg_end) {
       const Way<Dim> straight = find_way(sphere, leg_end, dt);
-      const double girth = (bounces < max_bounces ? 1.0 : squeezed) * radius;
+      // Only what moves can press a sphere flat. Past facets at rest, more bounces are a corner: there it waits, whole, for the next step.
+      const bool pressed = step_way_ > 0.0;
+      const double girth = (pressed && bounces >= max_bounces ? squeezed : 1.0) * radius;
       const FirstHit<Dim> hit = find_first_hit<Dim>(placed_, near, girth, sphere, straight, leg_end);
       if (!hit.touched) {
         arrive<Dim>(sphere, straight.goal, leg_end);
@@ -272,7 +315,7 @@ bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, V
       }
       const double share = sphere.share + hit.time * (leg_end - sphere.share);
       arrive<Dim>(sphere, hit.touched->pose(share).to_world(hit.place), share);
-      if (bounces++ == 2 * max_bounces)  // held fast from all sides: it goes with what it touched last
+      if (bounces++ == (pressed ? 2 : 1) * max_bounces)  // held fast from all sides: it goes with what it touched last
         arrive<Dim>(sphere, hit.touched->pose(leg_end).to_world(hit.place), leg_end);
       else
         bounce(sphere, hit);

@@ -88,7 +88,7 @@ class Colliders {
   double step_way() const { return step_way_; }
 
   /// Moves a sphere of radius `radius` [m] with `transport` velocity for the step of `dt` [s] that has begun; at each hit it goes on with
-  /// the new velocity, in the frame of what it hit, and may hit again, up to `max_bounces`. Then the sphere gives in: it goes on as one of
+  /// the new velocity, in the frame of what it hit, and may hit again, up to `max_bounces`. Then, where obstacles move, the sphere gives in: it goes on as one of
   /// a thousandth of the radius (`squeezed`), so that it is pressed flat before it changes sides. A sphere that overlaps an obstacle at the
   /// start is first moved out to touch it. `velocity` [m/s] gets the same answers as `transport`. A wall holds fluid off by its pressure:
   /// there the sphere is but a guard, of `wall_guard` times the radius. Returns whether anything was hit.
@@ -96,6 +96,14 @@ class Colliders {
   /// Relative to an obstacle that turns, a straight way is curved. It is taken along chords, whose ends are exact; they are so short that they
   /// leave it by no more than a tenth of the guard. So a sphere changes sides at no speed.
   bool move_sphere(double radius, double dt, Vec<Dim>& position, Vec<Dim>& transport, Vec<Dim>& velocity) const;
+
+  /// Farther than this from all obstacles nothing is touched, and move_sphere() is a plain position += dt transport [m].
+  double reach(double radius, double dt, const Vec<Dim>& transport) const {
+    return max_girth_ * radius + dt * transport.norm() + step_way_;
+  }
+
+  /// From `point` to the nearest obstacle where the step begins [m], at most `limit`.
+  double clearance(const Vec<Dim>& point, double limit) const;
 
   static constexpr int max_bounces = 8;
   static constexpr double wall_guard = 0.4;  ///< a quarter of the spacing in 3D
@@ -106,6 +114,7 @@ class Colliders {
   double max_slide_ = 0.0;  ///< fastest surface_velocity [m/s]
   double step_way_ = 0.0;
   double step_end_ = 0.0;  ///< [s]
+  double max_girth_ = 0.0;  ///< of spheres at any obstacle, in radii
 };
 
 }  // namespace smelt

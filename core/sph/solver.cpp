@@ -101,6 +101,7 @@ void Solver<Dim, Real>::resize_derived() {
     pressure_gradient_.resize(n, Vec<Dim>::Zero());
   }
   if (terms_.diffusion) diffusion_sums_.resize(n);
+  if (!colliders_.empty()) clearance_.resize(n, 0.0);
 }
 
 // ---------------------------------------------------------------------------------------------------------- the algorithm
@@ -109,8 +110,12 @@ template <int Dim, typename Real>
 void Solver<Dim, Real>::prepare(double time) {
   colliders_.place_at(time);
   if (terms_.pair.heat) heat_balance_.assign(particles_.size(), {});
+  std::fill(clearance_.begin(), clearance_.end(), 0.0);
   search_neighbours();
-  if (walls_) walls_->update(colliders_, particles_.position);
+  if (walls_) {
+    find_walls();
+    walls_->update(colliders_, particles_.position);
+  }
   pack_motion(particles_.velocity);
   sum_densities();
   evaluate_rates();
@@ -134,10 +139,14 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
   kick(0.5 * dt);
   colliders_.begin_step(time, dt);
   drift(dt);
-  if (colliders_.end_step()) travelled_ = std::numeric_limits<double>::infinity();  // the lists name an obstacle that is not there
+  if (colliders_.end_step()) travelled_ = travelled_at_walls_ = std::numeric_limits<double>::infinity();  // the lists name an obstacle that is not there
 
   if (2.0 * travelled_ > parameters_.skin * parameters_.smoothing_length) search_neighbours();
-  if (walls_) walls_->update(colliders_, particles_.position);
+  if (walls_) {
+    // Lists of walls last longer than those of neighbours, whatever order the particles are in.
+    if (travelled_at_walls_ > wall_slack()) find_walls();
+    walls_->update(colliders_, particles_.position);
+  }
 
   // Density, heat and stress change with the velocity that moved the particles.
   pack_motion(terms_.pair.xsph ? transport_ : particles_.velocity);
@@ -162,6 +171,8 @@ void Solver<Dim, Real>::search_neighbours() {
   for_each_array(particles_, [&](auto& values) { reorder(values, order); });
   reorder(transport_, order);
   reorder(heat_balance_, order);
+  if (terms_.periodic) std::fill(clearance_.begin(), clearance_.end(), 0.0);  // of places across the box
+  reorder(clearance_, order);
   // The rates of the last step look half a kick ahead (pack_gas), or say what gradient balances them (pack_gradients).
   if (terms_.gas || terms_.diffusion) reorder(acceleration_, order);
   if (terms_.gas) reorder(energy_rate_, order);
@@ -174,7 +185,14 @@ void Solver<Dim, Real>::search_neighbours() {
   for (const auto& x : particles_.position) bounds.extend(x);
   origin_ = bounds.centre();
   travelled_ = 0.0;
-  if (walls_) walls_->find(colliders_, particles_.position, parameters_.skin * parameters_.smoothing_length);
+  if (walls_) walls_->reorder(order);
+  if (terms_.periodic) travelled_at_walls_ = std::numeric_limits<double>::infinity();  // particles came from across the box
+}
+
+template <int Dim, typename Real>
+void Solver<Dim, Real>::find_walls() {
+  walls_->find(colliders_, particles_.position, wall_slack());
+  travelled_at_walls_ = 0.0;
 }
 
 // ------------------------------------------------------------------------------------------------------ rates and forces
@@ -354,6 +372,20 @@ void Solver<Dim, Real>::kick(double dt) {
     parallel_for_each(particles_.size(), [&](std::size_t i) { particles_.internal_energy[i] += dt * energy_rate_[i]; });
 }
 
+/// Past obstacles. Nothing is looked up while it cannot reach any: the same bytes, at no cost.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::move_particle(std::size_t i, double radius, double dt, Vec<Dim>& transport) {
+  const double nearer = colliders_.step_way();
+  if (clearance_[i] > colliders_.reach(radius, dt, transport)) {
+    clearance_[i] -= dt * transport.norm() + nearer;
+    particles_.position[i] += dt * transport;
+    return;
+  }
+  const bool hit = colliders_.move_sphere(radius, dt, particles_.position[i], transport, particles_.velocity[i]);
+  // What hits will hit again.
+  clearance_[i] = hit ? 0.0 : colliders_.clearance(particles_.position[i], 16.0 * radius) - nearer;
+}
+
 template <int Dim, typename Real>
 void Solver<Dim, Real>::drift(double dt) {
   const double radius = particle_radius<Dim>(parameters_.particle_volume);
@@ -368,12 +400,13 @@ void Solver<Dim, Real>::drift(double dt) {
         if (colliders_.empty() || is_driven(i))
           particles_.position[i] += dt * transport;
         else
-          colliders_.move_sphere(radius, dt, particles_.position[i], transport, velocity);
+          move_particle(i, radius, dt, transport);
         if (terms_.pair.xsph) transport_[i] = transport;
         return (particles_.position[i] - before).norm();
       },
       [](double a, double b) { return std::max(a, b); });
   travelled_ += farthest + colliders_.step_way();
+  travelled_at_walls_ += farthest + colliders_.step_way();
 }
 
 template class Solver<3, float>;

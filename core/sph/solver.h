@@ -100,6 +100,9 @@ class Solver {
   double list_reach() const { return (kernel_kappa(parameters_.kernel) + parameters_.skin) * parameters_.smoothing_length; }
   void search_neighbours();
   void pack_heat(std::size_t i, double largest_conductivity, Real* record) const;
+  void find_walls();
+  /// How far particles may move before the facets near them are looked up anew [m].
+  double wall_slack() const { return 0.25 * parameters_.smoothing_length; }
   void pack_motion(const std::vector<Vec<Dim>>& velocity);
   void pack_gas(std::size_t i, double dt);
   void pack_gradients();
@@ -121,6 +124,7 @@ class Solver {
   void evaluate_forces();
   void kick(double dt);
   void drift(double dt);
+  void move_particle(std::size_t i, double radius, double dt, Vec<Dim>& transport);
   double fastest_sound() const;
   double internal_energy(std::size_t i) const { return terms_.gas ? particles_.internal_energy[i] : 0.0; }
   TimeStepInput time_step_input() const;
@@ -150,6 +154,8 @@ class Solver {
   PairFields<Dim, Real> fields_;
   Vec<Dim> origin_ = Vec<Dim>::Zero();
   double travelled_ = std::numeric_limits<double>::infinity();  ///< farthest way of any particle since the last search [m]
+  double travelled_at_walls_ = std::numeric_limits<double>::infinity();  ///< the same since walls were found [m]
+  std::vector<double> clearance_;  ///< at least so far is each particle from all obstacles [m]; empty without any
   std::vector<DensitySums<Real>> density_sums_;  ///< empty where density follows the continuity equation
   std::optional<Walls<Dim>> walls_;  ///< absent where no obstacle is a wall
   std::vector<PressureGradientSums<Dim, Real>> pressure_sums_;  ///< like the next two, empty without walls and density diffusion

@@ -88,7 +88,8 @@ void Solver<Dim, Real>::exchange_particles(double time) {
   const bool more = pour_in(time);
   if (!fewer && !more) return;
   resize_derived();
-  travelled_ = std::numeric_limits<double>::infinity();  // the lists name particles that are not there
+  travelled_ = travelled_at_walls_ = std::numeric_limits<double>::infinity();  // the lists name particles that are not there
+  std::fill(clearance_.begin(), clearance_.end(), 0.0);
 }
 
 template <int Dim, typename Real>

@@ -10,8 +10,10 @@
 #include "core/sph/collision.h"
 #include "core/sph/particles.h"
 #include "core/sph/wall_integrals.h"
+#include "core/sph/wall_samples.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -55,6 +57,9 @@ class Walls {
   /// Finds the particles that may come near a facet while none moves farther than `slack` [m].
   void find(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position, double slack);
 
+  /// Follows particles that were put in another order: now particle i is what particle order[i] was.
+  void reorder(const std::vector<std::int32_t>& order);
+
   /// What each of them sees from where it is now. Obstacles that are not walls are left out.
   void update(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position);
 
@@ -64,11 +69,24 @@ class Walls {
   const WallNeighbour<Dim>* of(std::size_t i) const { return slot_[i] < 0 ? nullptr : &neighbours_[static_cast<std::size_t>(slot_[i])]; }
 
  private:
-  struct Candidate {
-    std::uint32_t obstacle;
-    std::uint32_t facet;
+  /// What a particle has in reach of one obstacle, at rest as the obstacle's facets are.
+  struct Sight {
+    std::uint32_t obstacle = 0;
+    double side = 1.0;                    ///< +1 where the particle is in front of it, -1 behind
+    Vec<Dim> origin = Vec<Dim>::Zero();   ///< where it was found; samples are relative to it
+    std::size_t facets_end = 0, patches_end = 0;  ///< of its own in the block; they begin where those of the sight before end
   };
-  void append_contacts(const Colliders<Dim>& colliders, const Vec<Dim>& position, std::size_t slot,
+  /// Of a block of particles.
+  struct Found {
+    std::vector<std::int32_t> particles;  ///< as they were numbered then
+    std::vector<std::size_t> sights_end;  ///< of each of them
+    std::vector<Sight> sights;
+    std::vector<std::uint32_t> facets;    ///< to be integrated one by one
+    std::vector<std::size_t> patches_end;  ///< of patches of samples, in `samples`
+    std::vector<float> samples;
+  };
+  void find_in_block(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position, std::size_t begin, double slack, Found& found) const;
+  void append_contacts(const Colliders<Dim>& colliders, const Vec<Dim>& position, const Found& found, std::size_t k, std::size_t slot,
                        std::vector<WallContact<Dim>>& contacts);
 
   WallKernel<Dim> kernel_;
@@ -76,9 +94,11 @@ class Walls {
   double least_distance_;
   std::vector<std::int32_t> slot_;  ///< of each particle among neighbours_, or -1
   std::vector<WallNeighbour<Dim>> neighbours_;
-  std::vector<std::size_t> begin_;  ///< of each neighbour's candidates
-  std::vector<Candidate> candidates_;
-  std::vector<std::vector<WallContact<Dim>>> contacts_;  ///< of blocks of neighbours: far fewer than candidates on a fine mesh
+  std::optional<SampleKernel> sample_kernel_;  ///< in 3D
+  std::vector<WallTree> trees_;      ///< of every obstacle, in 3D
+  std::vector<Found> found_;         ///< of blocks of particles
+  std::vector<std::size_t> first_;   ///< neighbour of each block
+  std::vector<std::vector<WallContact<Dim>>> contacts_;  ///< of blocks
 };
 
 }  // namespace smelt

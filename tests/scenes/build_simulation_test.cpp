@@ -86,9 +86,9 @@ TEST(BuildSimulation, CollidersCarryWhatTheSceneSaysOfThem) {
 TEST(BuildSimulation, AClosedColliderAroundFluidIsAContainer) {
   Scene scene = bunny_scene({"particles.count=500"});
   ColliderSettings vessel = scene.colliders[0];
-  vessel.mesh = "assets/bunny.obj";
-  vessel.placement.scale = 0.12;
-  vessel.placement.translate = Vec3(0, -0.05, 0);
+  vessel.mesh = "assets/bad/inverted_box.obj";
+  vessel.placement.scale = 4.0;
+  vessel.placement.translate = Vec3(-2, -1, -2);
   scene.colliders = {vessel};
   EXPECT_FALSE(build_colliders(build_simulation(scene)).placed()[0].obstacle.closed);
   scene.colliders[0].placement.translate = Vec3(5, 0, 0);

@@ -40,6 +40,38 @@ TEST(Collision, OverlapIsPushedOut) {
   EXPECT_NEAR(x[1], 0.5, 1e-14);
 }
 
+// Which side a centre on the facet itself belongs to, nothing says: the front's.
+TEST(Collision, ACentreOnAFacetGoesToItsFront) {
+  const Colliders<3> floor = floor_with({0.0, 0.0});
+  Vec3 x(0.3, 0.0, 0.1), v = Vec3::Zero();
+  Vec3 transport = v;
+  floor.move_sphere(0.5, 0.1, x, transport, v);
+  EXPECT_NEAR((x - Vec3(0.3, 0.5, 0.1)).norm(), 0.0, 1e-14);
+}
+
+// A wedge too narrow for the sphere: it is pushed about, but never to the other side.
+TEST(Collision, PushingOutOfOneFacetDoesNotPassAnother) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  Colliders<3> wedge;
+  Obstacle<3> sides;
+  for (const double y : {-1.0, 1.0}) {
+    sides.facets.push_back({Vec3(0, 0, -9), Vec3(0, 0, 9), Vec3(9, y, 9)});
+    sides.facets.push_back({Vec3(0, 0, -9), Vec3(9, y, 9), Vec3(9, y, -9)});
+  }
+  wedge.add(sides);
+  for (int trial = 0; trial < 1000; ++trial) {
+    Vec3 x(0.1 + 3.0 * uniform(random), 0.0, uniform(random));
+    x[1] = (2.0 * uniform(random) - 1.0) * 0.999 * x[0] / 9.0;
+    Vec3 v = Vec3::Zero();
+    for (int step = 0; step < 5; ++step) {
+      Vec3 transport = v;
+      wedge.move_sphere(0.5, 0.1, x, transport, v);
+      ASSERT_LT(std::abs(x[1]), x[0] / 9.0) << "trial " << trial << " step " << step;
+    }
+  }
+}
+
 /// A cube of side 2 around the origin, faces in two triangles each.
 Colliders<3> box(const ContactResponse& response) {
   std::vector<Simplex<3>> triangles;

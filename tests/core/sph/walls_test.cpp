@@ -3,6 +3,7 @@
 #include "core/geometry/facet.h"
 #include "core/sph/solver.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -221,10 +222,62 @@ TEST(Walls, AFineMeshIsTheSameWall) {
     const WallNeighbour<3> expected = look(a, Vec3(0.02, height, 0.05), of_coarse), found = look(b, Vec3(0.02, height, 0.05), of_fine);
     ASSERT_EQ(expected.contacts.size(), 1u);
     ASSERT_EQ(found.contacts.size(), 1u);
-    EXPECT_NEAR(found.contacts[0].distance, height, 1e-9);
+    EXPECT_NEAR(found.contacts[0].distance, height, 1e-6) << "samples are in single precision";
     EXPECT_NEAR(found.contacts[0].area / expected.contacts[0].area, 1.0, 5e-3) << height;
     EXPECT_NEAR(found.solid, expected.solid, 2e-3 * 0.5) << height;
     EXPECT_NEAR((found.moment - expected.moment).norm(), 0.0, 3e-3) << height;
+  }
+}
+
+/// Gentle hills, at any fineness.
+Obstacle<3> make_hills(int n, double reach) {
+  Obstacle<3> hills;
+  hills.wall = true;
+  const auto at = [&](int i, int k) {
+    const double x = reach * (2.0 * i / n - 1.0), z = reach * (2.0 * k / n - 1.0);
+    return Vec3(x, 0.1 * std::sin(1.1 * x) * std::cos(0.9 * z), z);
+  };
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < n; ++k) {
+      hills.facets.push_back({at(i, k), at(i, k + 1), at(i + 1, k + 1)});
+      hills.facets.push_back({at(i, k), at(i + 1, k + 1), at(i + 1, k)});
+    }
+  return hills;
+}
+
+// From facets of two h to a twentieth of h: what a particle sees where it was found, and after it has moved by a quarter of h, is the sum over facets.
+TEST(Walls, HillsOfAnyFinenessAreWhatTheirFacetsSumUpTo) {
+  for (const int n : {4, 12, 40, 160}) {
+    const Obstacle<3> hills = make_hills(n, 4.0);
+    const std::vector<Simplex<3>> facets = hills.facets;
+    const Colliders<3> colliders = one(hills);
+    Walls<3> walls(WallKernel<3>(1.0), 0.8, 0.2);
+    for (const double height : {0.5, 0.8, 1.5}) {
+      const std::vector<Vec3> found{Vec3(0.3, height, -0.4)};
+      walls.find(colliders, found, 0.25);
+      for (const Vec3& moved : {Vec3(0, 0, 0), Vec3(0.1, -0.15, 0.1), Vec3(-0.1, 0.2, 0.05)}) {
+        const std::vector<Vec3> now{found[0] + moved};
+        walls.update(colliders, now);
+        double solid = 0.0;
+        Vec3 push = Vec3::Zero(), expected = Vec3::Zero();
+        Mat3 moment = Mat3::Zero();
+        for (const auto& facet : facets) {
+          const Vec3 normal = facet_normal<3>(facet);
+          const FacetIntegrals<3> exact = integrate_facet<3>(WallKernel<3>(1.0), facet, normal, now[0]);
+          expected += exact.area * normal;
+          solid += exact.solid;
+          moment += exact.solid * Mat3::Identity() - exact.first * normal.transpose();
+        }
+        for (const WallContact<3>& contact : walls.of(0)->contacts) push += contact.area * contact.normal;
+        const std::string which = fmt::format("{} x {} cells, {} high, moved {}", n, n, height, moved.norm());
+        EXPECT_LT((push - expected).norm(), 3e-3 * 0.7) << which;  // 0.7: on the wall
+        EXPECT_LT(std::abs(walls.of(0)->solid - solid), 3e-3 * 0.5) << which;
+        EXPECT_LT((walls.of(0)->moment - 0.5 * (moment + moment.transpose())).norm(), 4e-3) << which;
+        if (n == 160) {
+          EXPECT_LT(walls.of(0)->contacts.size(), 10u) << which;
+        }
+      }
+    }
   }
 }
 
