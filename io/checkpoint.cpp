@@ -69,6 +69,7 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
   for_each_array(checkpoint.particles, [&](const auto& values) { writer.array(values); });
   writer.value(checkpoint.account.next_id);
   for (const auto* counts : {&checkpoint.account.initial, &checkpoint.account.removed, &checkpoint.account.entered}) writer.array(*counts);
+  writer.array(checkpoint.bodies);
   writer.value(hash_bytes(writer.bytes));
   write_file_atomically(path, writer.bytes);
 }
@@ -91,6 +92,7 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
   for_each_array(checkpoint.particles, [&](auto& values) { reader.array(values); });
   reader.value(checkpoint.account.next_id);
   for (auto* counts : {&checkpoint.account.initial, &checkpoint.account.removed, &checkpoint.account.entered}) reader.array(*counts);
+  reader.array(checkpoint.bodies);
   return checkpoint;
 }
 

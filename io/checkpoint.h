@@ -3,6 +3,7 @@
 
 #include "core/sph/open_boundary.h"
 #include "core/sph/particles.h"
+#include "core/sph/rigid_body.h"
 
 #include <cstdint>
 #include <filesystem>
@@ -15,6 +16,7 @@ struct Checkpoint {
   std::uint64_t scene_hash = 0;      ///< of what the simulation depends on
   Particles<3> particles;
   ParticleAccount account;
+  std::vector<BodyState<3>> bodies;  ///< rigid bodies, in the order of their colliders
 };
 
 /// Writes all arrays bit by bit, with a hash of them at the end. Atomic. Throws Error.

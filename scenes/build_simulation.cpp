@@ -232,6 +232,24 @@ Emitter<3> to_emitter(const Scene& scene, const EmitterSettings& s) {
   return emitter;
 }
 
+/// Mass of a rigid body; turns a mesh that is inside out. Throws Error for one that bounds no volume.
+double weigh_body(const ColliderSettings& s, TriangleMesh& mesh, std::vector<std::string>& warnings) {
+  if (!compute_topology(mesh).closed())
+    fail(
+        "{}: a rigid body needs a closed mesh, and this one has holes: close it, or leave mass_kg and density_kg_m3 "
+        "out",
+        s.mesh);
+  double volume = compute_volume(mesh);
+  if (volume < 0.0) {
+    for (auto& triangle : mesh.triangles) std::swap(triangle[0], triangle[1]);
+    volume = -volume;
+    warnings.push_back(
+        fmt::format("{}: the mesh of the rigid body is inside out; its faces were turned round", s.mesh));
+  }
+  if (!(volume > 0.0)) fail("{}: a rigid body needs a mesh that bounds a volume, and this one bounds none", s.mesh);
+  return s.mass ? *s.mass : *s.density * volume;
+}
+
 void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetup& setup) {
   SolverParameters<3>& p = setup.parameters;
   p.particle_volume = setup.particles.size() > 0 ? setup.body_volume / static_cast<double>(setup.particles.size())
@@ -320,8 +338,9 @@ SimulationSetup build_simulation(const Scene& scene) {
     } else {
       setup.colliders.push_back(import_placed_collider(scene, collider));
     }
-    const TriangleMesh& mesh = setup.colliders.back();
+    TriangleMesh& mesh = setup.colliders.back();
     setup.obstacles.push_back(to_obstacle(collider, mesh));
+    if (collider.rigid()) setup.obstacles.back().mass = weigh_body(collider, mesh, setup.warnings);
     const Motion<3>& motion = setup.obstacles.back().motion;
     const TriangleMesh at_start = motion.still() ? mesh : moved(mesh, pose_at(motion, 0.0));
     for (const Vec3& x : at_start.vertices) scene_bounds.extend(x);

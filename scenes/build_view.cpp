@@ -79,20 +79,29 @@ RenderScene build_view(const Scene& scene) {
   return view;
 }
 
-void place_colliders(const Scene& scene, double time, const std::vector<ColliderView>& at_rest, RenderScene& view) {
+void place_colliders(const Scene& scene, double time, const std::vector<BodyPose>& bodies,
+                     const std::vector<ColliderView>& at_rest, RenderScene& view) {
   std::size_t drawn = 0;
-  for (const ColliderSettings& collider : scene.colliders) {
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+    const ColliderSettings& collider = scene.colliders[k];
     if (collider.mesh == "ground") continue;
-    const std::size_t k = drawn++;
+    const std::size_t shown = drawn++;
+    ColliderView& drawn_view = view.colliders[shown];
     if (collider.until && time >= *collider.until) {
-      view.colliders[k].mesh = {};
-      view.colliders[k].normals.clear();
+      drawn_view.mesh = {};
+      drawn_view.normals.clear();
       continue;
     }
-    const Motion<3> motion = to_motion(collider, at_rest[k].mesh);
-    if (motion.still()) continue;
-    view.colliders[k].mesh = moved(at_rest[k].mesh, pose_at(motion, time));
-    if (!at_rest[k].normals.empty()) view.colliders[k].normals = compute_vertex_normals(view.colliders[k].mesh);
+    const TriangleMesh& mesh = at_rest[shown].mesh;
+    const Motion<3> motion = to_motion(collider, mesh);
+    const auto body = std::find_if(bodies.begin(), bodies.end(), [&](const BodyPose& b) { return b.collider == static_cast<int>(k); });
+    if (body != bodies.end())
+      drawn_view.mesh = moved(mesh, body->pose);
+    else if (!motion.still() && !collider.rigid())
+      drawn_view.mesh = moved(mesh, pose_at(motion, time));
+    else
+      continue;
+    if (!at_rest[shown].normals.empty()) drawn_view.normals = compute_vertex_normals(drawn_view.mesh);
   }
 }
 

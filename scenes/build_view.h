@@ -1,6 +1,7 @@
 #pragma once
 // From a scene to what the renderer draws around the fluid.
 
+#include "io/body_poses.h"
 #include "render/scene_view.h"
 #include "scenes/scene.h"
 
@@ -9,7 +10,9 @@ namespace smelt {
 /// Camera, lights, look, ground and colliders; what the scene leaves out is chosen to show its bodies well.
 RenderScene build_view(const Scene& scene);
 
-/// Moves the colliders of a view that build_view() made to where they are at `time` [s]; `at_rest`: the meshes it gave them.
-void place_colliders(const Scene& scene, double time, const std::vector<ColliderView>& at_rest, RenderScene& view);
+/// Moves the colliders of a view that build_view() made to where they are at `time` [s], and rigid bodies to where
+/// `bodies` has them; `at_rest`: the meshes it gave them.
+void place_colliders(const Scene& scene, double time, const std::vector<BodyPose>& bodies,
+                     const std::vector<ColliderView>& at_rest, RenderScene& view);
 
 }  // namespace smelt

@@ -7,11 +7,15 @@
 #include "scenes/stage_frames.h"
 #include "scenes/stages.h"
 
+#include <algorithm>
+
 namespace smelt {
 
 void render_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report, Progress& progress) {
   RenderScene view = build_view(scene);
-  const auto colliders_at_start = view.colliders;
+  const auto colliders_at_rest = view.colliders;
+  const bool has_bodies =
+      std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const ColliderSettings& c) { return c.rigid(); });
   check_scene(view);
   create_directories_or_fail(folder.frames());
   RenderOptions quality;
@@ -25,7 +29,8 @@ void render_frames(const Scene& scene, const OutputFolder& folder, const StageOp
     if (options.resume && all_exist({picture})) continue;
 
     const CostMeter meter;
-    place_colliders(scene, (frame - 1) / scene.shot.fps, colliders_at_start, view);
+    const std::vector<BodyPose> bodies = has_bodies ? read_body_poses(folder.bodies(frame)) : std::vector<BodyPose>{};
+    place_colliders(scene, (frame - 1) / scene.shot.fps, bodies, colliders_at_rest, view);
     const SurfaceMesh surface = read_surface(folder.surface_obj(frame), folder.surface_vdb(frame));
     try {
       write_png(picture, render_frame(surface, view, quality, frame));

@@ -35,6 +35,10 @@ std::string cpu_name() {
   return "unknown";
 }
 
+ordered_json vector_json(const Vec3& v) {
+  return {v[0], v[1], v[2]};
+}
+
 ordered_json cost_json(const StageCost& cost) {
   return {{"seconds", cost.seconds}, {"bytes", cost.bytes}};
 }
@@ -69,7 +73,7 @@ void RunReport::set_run(const std::string& scene_text, std::uint64_t scene_hash,
 }
 
 void RunReport::set_simulated(int frame, double time, const StepStatistics& steps, const Diagnostics<3>& d,
-                              const std::optional<MassAccount>& mass, const StageCost& cost) {
+                              const std::optional<MassAccount>& mass, const std::vector<BodyPose>& bodies, const StageCost& cost) {
   ordered_json terms = ordered_json::object();
   for (std::size_t k = 0; k < n_time_step_terms; ++k) terms[std::string(time_step_term_names[k])] = steps.n_by_term[k];
   ordered_json entry = {{"time_s", time},
@@ -95,6 +99,11 @@ void RunReport::set_simulated(int frame, double time, const StepStatistics& step
                                 {"imbalance", mass->initial + mass->added - mass->removed - mass->present}};
   if (mass) entry["poured_m3"] = mass->poured_volume;
   if (d.max_temperature > 0.0) entry["temperature_K"] = {{"min", d.min_temperature}, {"max", d.max_temperature}};
+  for (const BodyPose& body : bodies)
+    entry["bodies"].push_back({{"collider", body.collider},
+                               {"centre_m", vector_json(body.centre)},
+                               {"velocity_m_s", vector_json(body.velocity)},
+                               {"angular_velocity_rad_s", vector_json(body.angular_velocity)}});
   entry.update(cost_json(cost));
   document_->frame(frame)["simulate"] = entry;
   save();

@@ -3,6 +3,7 @@
 
 #include "core/sph/diagnostics.h"
 #include "core/sph/time_step.h"
+#include "io/body_poses.h"
 
 #include <array>
 #include <cstdint>
@@ -10,6 +11,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace smelt {
 
@@ -62,9 +64,9 @@ class RunReport {
   ~RunReport();
 
   void set_run(const std::string& scene_text, std::uint64_t scene_hash, double spacing, double body_volume);
-  /// `mass` is absent in a scene without emitters and outflow.
+  /// `mass` is absent in a scene without emitters and outflow, `bodies` empty in one without rigid bodies.
   void set_simulated(int frame, double time, const StepStatistics& steps, const Diagnostics<3>& diagnostics,
-                     const std::optional<MassAccount>& mass, const StageCost& cost);
+                     const std::optional<MassAccount>& mass, const std::vector<BodyPose>& bodies, const StageCost& cost);
   void set_surfaced(int frame, double volume, std::size_t n_vertices, std::size_t n_triangles, const StageCost& cost);
   void set_rendered(int frame, const StageCost& cost);
   void save();

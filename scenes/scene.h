@@ -132,9 +132,14 @@ struct ColliderSettings {
   std::optional<Vec3> pivot;
   std::string interpolation = "linear";
   std::vector<KeyframeSettings> keyframes;
+  std::optional<double> mass;
+  std::optional<double> density;
   Vec3 surface_velocity = Vec3::Zero();
   std::optional<double> temperature;
   std::optional<double> until;
+
+  /// It has a mass: what it meets pushes it back.
+  bool rigid() const { return mass || density; }
   Vec3 colour{0.35, 0.36, 0.38};
 };
 

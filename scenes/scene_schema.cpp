@@ -111,20 +111,30 @@ void visit_collider(SchemaVisitor& v, ColliderSettings& s) {
   v.vector({"angular_velocity_rad_s", "it spins with about an axis through the pivot, counter-clockwise seen from the vector's tip; not of the "
                                       "`ground`"},
            s.angular_velocity, any_number);
+  v.number({"mass_kg",
+            "makes it a rigid body, which gravity and what it meets push about: its mesh closed, velocity_m_s and "
+            "angular_velocity_rad_s those at the start, about the centre of mass",
+            "it goes where the scene says"},
+           s.mass, positive);
+  v.number({"density_kg_m3", "the same by the mesh's volume; instead of mass_kg", "see mass_kg"}, s.density, positive);
   v.vector({"pivot_m", "point it turns about, where it is before anything moves", "the middle of the placed mesh's box"}, s.pivot, any_number);
   v.choice({"interpolation", "between keyframes: `linear`: at a constant speed; `smooth`: starts and stops gently at each keyframe"},
            s.interpolation, {"linear", "smooth"});
   v.vector({"surface_velocity_m_s", "of its surface beyond that, as of a belt that stays where it is; its part along the surface"}, s.surface_velocity, any_number);
-  v.number({"temperature_K", "heat passes between it and the fluid at it; only of a `wall`, in a scene with heat", "no heat passes"},
+  v.number({"temperature_K", "heat passes between it and the fluid at it; only of a `wall`, in a scene with heat",
+            "no heat passes"},
            s.temperature, non_negative);
   v.number({"until_s", "then it vanishes: a gate that opens", "it stays"}, s.until, positive);
   v.vector({"colour", "linear RGB in pictures"}, s.colour, unit_interval);
   visit_tables<KeyframeSettings>(
       v,
-      {"keyframes", "where it is at given times, two or more, instead of velocity_m_s and angular_velocity_rad_s: "
-                    "`keyframes = [{ time_s = 0.0 }, { time_s = 0.5, translate_m = [0.0, -0.2, 0.0], rotate_deg = [0.0, 0.0, 90.0] }]`. It turns "
-                    "from one to the next by the shorter way, at an even rate; before the first and after the last, beyond the shot too, it "
-                    "stands still"},
+      {"keyframes",
+       "where it is at given times, two or more, instead of velocity_m_s and angular_velocity_rad_s: "
+       "`keyframes = [{ time_s = 0.0 }, { time_s = 0.5, translate_m = [0.0, -0.2, 0.0], rotate_deg = [0.0, 0.0, 90.0] "
+       "}]`. It turns "
+       "from one to the next by the shorter way, at an even rate; before the first and after the last, beyond the shot "
+       "too, it "
+       "stands still"},
       s.keyframes, [&](KeyframeSettings& k) {
         v.required_number({"time_s", "later than the keyframe before"}, k.time, any_number);
         v.vector({"translate_m", "of the pivot, from where the collider is placed"}, k.translate, any_number);

@@ -2,6 +2,7 @@
 #include "core/hash.h"
 #include "core/sph/particle_frame.h"
 #include "io/atomic_file.h"
+#include "io/body_poses.h"
 #include "io/checkpoint.h"
 #include "io/particles_vdb.h"
 #include "scenes/build_simulation.h"
@@ -99,19 +100,34 @@ StepStatistics advance_frame(Solver<3, Real>& solver, double start_time, double 
   return statistics;
 }
 
+std::vector<BodyPose> to_body_poses(const Colliders<3>& colliders) {
+  std::vector<BodyPose> poses;
+  for (std::size_t k = 0; k < colliders.placed().size(); ++k)
+    if (const auto& body = colliders.placed()[k].body)
+      poses.push_back(
+          {static_cast<int>(k), body->pose(), body->state.centre, body->state.velocity, from_skew(body->spin())});
+  return poses;
+}
+
 /// Cache first, then the checkpoint: a checkpoint says that its frame is safe.
 template <typename Real>
 void store_frame(const Solver<3, Real>& solver, const SimulationSetup& setup, const OutputFolder& folder, std::uint64_t scene_hash,
                  int frame, double time) {
   write_particles(folder.particles(frame), to_frame(solver, setup.spacing, frame, time));
-  write_checkpoint(folder.checkpoint(frame), {frame, time, scene_hash, solver.particles(), solver.account()});
+  const std::vector<BodyPose> bodies = to_body_poses(solver.colliders());
+  if (!bodies.empty()) write_body_poses(folder.bodies(frame), frame, time, bodies);
+  write_checkpoint(folder.checkpoint(frame),
+                   {frame, time, scene_hash, solver.particles(), solver.account(), solver.colliders().body_states()});
   std::filesystem::remove(folder.checkpoint(frame - 2));
 }
 
 template <typename Real>
 void run_simulation(const Scene& scene, const OutputFolder& folder, const StageOptions& options, SimulationSetup& setup,
                     const std::optional<Checkpoint>& checkpoint, std::uint64_t scene_hash, RunReport& report, Progress& progress) {
-  Solver<3, Real> solver(setup.parameters, setup.materials, build_colliders(setup),
+  Colliders<3> colliders = build_colliders(setup);
+  if (checkpoint) colliders.set_body_states(checkpoint->bodies);
+  if (colliders.has_bodies()) create_directories_or_fail(folder.bodies());
+  Solver<3, Real> solver(setup.parameters, setup.materials, std::move(colliders),
                          checkpoint ? checkpoint->particles : std::move(setup.particles),
                          checkpoint ? checkpoint->account : ParticleAccount{});
   int frame = 1;
@@ -122,7 +138,8 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
     const CostMeter meter;
     store_frame(solver, setup, folder, scene_hash, 1, 0.0);
     const Diagnostics<3> diagnostics = compute_diagnostics(solver);
-    report.set_simulated(1, 0.0, {}, diagnostics, compute_mass_account(solver, diagnostics.mass), meter.finish({folder.particles(1)}));
+    report.set_simulated(1, 0.0, {}, diagnostics, compute_mass_account(solver, diagnostics.mass), to_body_poses(solver.colliders()),
+                         meter.finish({folder.particles(1)}));
   }
 
   while (frame < options.frames.last) {
@@ -140,6 +157,7 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
     store_frame(solver, setup, folder, scene_hash, frame, time);
     const Diagnostics<3> diagnostics = compute_diagnostics(solver);
     report.set_simulated(frame, time, statistics, diagnostics, compute_mass_account(solver, diagnostics.mass),
+                         to_body_poses(solver.colliders()),
                          meter.finish({folder.particles(frame), folder.checkpoint(frame)}));
   }
 }

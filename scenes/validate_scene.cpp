@@ -178,7 +178,15 @@ void validate_collider(const ColliderSettings& s, bool hot, const std::string& p
     refuse(!s.velocity.isZero(0.0), ".velocity_m_s");
     refuse(!s.angular_velocity.isZero(0.0), ".angular_velocity_rad_s");
     refuse(!s.keyframes.empty(), ".keyframes");
+    refuse(s.mass.has_value(), ".mass_kg");
+    refuse(s.density.has_value(), ".density_kg_m3");
   }
+  if (s.mass && s.density)
+    errors.add(path + ".density_kg_m3", "give mass_kg or density_kg_m3, not both: one follows from the other");
+  if (s.rigid() && !s.keyframes.empty())
+    errors.add(path + ".keyframes", "a rigid body goes where it is pushed: leave the keyframes out, or its mass");
+  if (s.rigid() && s.pivot)
+    errors.add(path + ".pivot_m", "a rigid body turns about its centre of mass: leave this out");
   validate_keyframes(s, path, errors);
   if (s.temperature && !hot) errors.add(path + ".temperature_K", "no material has heat; give it one, or leave this out");
   if (s.temperature && !s.wall) errors.add(path + ".temperature_K", "heat passes through walls only; set wall = true, or leave this out");

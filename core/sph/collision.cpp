@@ -1,6 +1,8 @@
 #include "core/sph/collision.h"
 
+#include "core/error.h"
 #include "core/geometry/facet.h"
+#include "core/sph/body_contacts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,6 +33,8 @@ struct Moving {
   Vec<Dim> velocity;
   double share = 0.0;                            ///< of the step that is over
   const PlacedObstacle<Dim>* carrier = nullptr;  ///< what it touched last: it goes straight in that frame
+  std::vector<BodyHit<Dim>>* hits = nullptr;
+  std::uint32_t carrier_index = 0;
   Vec<Dim> relative = Vec<Dim>::Zero();          ///< transport less the carrier's motion there [m/s]: exactly 0 for what sticks
 };
 
@@ -45,6 +49,7 @@ struct Way {
 template <int Dim>
 struct FirstHit {
   const PlacedObstacle<Dim>* touched = nullptr;
+  std::uint32_t obstacle = 0;
   double time = 0.0;                   ///< share of the way
   Vec<Dim> normal = Vec<Dim>::Zero();  ///< like the next, in the obstacle's own frame
   Vec<Dim> place = Vec<Dim>::Zero();   ///< of the centre [m]
@@ -150,10 +155,17 @@ FirstHit<Dim> find_first_hit(const Obstacles<Dim>& obstacles, const Nearby& near
     for (std::size_t k = group.begin; k < group.end; ++k) {
       const auto contact = sweep_sphere<Dim>(from, way, radius_at(placed, radius), placed.bvh.simplices()[near.facets[k]]);
       if (contact && (!first.touched || contact->time < first.time))
-        first = {&placed, contact->time, contact->normal, from + contact->time * way};
+        first = {&placed, group.obstacle, contact->time, contact->normal, from + contact->time * way};
     }
   }
   return first;
+}
+
+/// A velocity that a rigid body gives the sphere is to be paid for by the body.
+template <int Dim>
+void set_velocity(Moving<Dim>& m, const PlacedObstacle<Dim>& by, std::uint32_t obstacle, const Vec<Dim>& velocity) {
+  if (by.body && m.hits) m.hits->push_back({obstacle, velocity - m.velocity, m.position});
+  m.velocity = velocity;
 }
 
 /// Goes there; what goes with an obstacle that turns, turns with it.
@@ -163,7 +175,7 @@ void arrive(Moving<Dim>& m, const Vec<Dim>& position, double share) {
     const Mat<Dim> turn = rotation_of<Dim>((share - m.share) * m.carrier->turn);
     const Vec<Dim>& with = m.carrier->twist.velocity;
     m.transport = with + turn * (m.transport - with);
-    m.velocity = with + turn * (m.velocity - with);
+    set_velocity<Dim>(m, *m.carrier, m.carrier_index, with + turn * (m.velocity - with));
     m.relative = turn * m.relative;
   }
   m.position = position;
@@ -190,8 +202,10 @@ void bounce(Moving<Dim>& m, const FirstHit<Dim>& hit) {
   const Vec<Dim> motion = touched.twist.at(place), slide = touched.velocity_at(place, normal) - motion;
   m.relative = slide + respond<Dim>(m.transport - motion - slide, normal, touched.obstacle.response);
   m.transport = motion + m.relative;
-  m.velocity = motion + slide + respond<Dim>(m.velocity - motion - slide, normal, touched.obstacle.response);
+  set_velocity<Dim>(m, touched, hit.obstacle,
+                    motion + slide + respond<Dim>(m.velocity - motion - slide, normal, touched.obstacle.response));
   m.carrier = &touched;
+  m.carrier_index = hit.obstacle;
 }
 
 }  // namespace
@@ -206,14 +220,40 @@ Pose<Dim> PlacedObstacle<Dim>::pose(double s) const {
   return between;
 }
 
+namespace {
+
+/// The rigid body of an obstacle with a mass, as it starts.
+template <int Dim>
+void make_body(PlacedObstacle<Dim>& placed) {
+  const Motion<Dim>& motion = placed.obstacle.motion;
+  CHECK(motion.keyframes.empty());
+  RigidBody<Dim> body = make_rigid_body<Dim>(placed.bvh.simplices(), *placed.obstacle.mass);
+  body.state.velocity = motion.velocity;
+  const Mat<Dim> second = body.axes * body.moments.asDiagonal() * body.axes.transpose();
+  body.state.angular_momentum = motion.spin * second + second * motion.spin;
+  placed.pivot = body.rest_centre;
+  placed.body = body;
+  for (const auto& facet : placed.bvh.simplices())
+    placed.corners.insert(placed.corners.end(), facet.begin(), facet.end());
+  const auto before = [](const Vec<Dim>& a, const Vec<Dim>& b) {
+    return std::lexicographical_compare(a.data(), a.data() + Dim, b.data(), b.data() + Dim);
+  };
+  std::sort(placed.corners.begin(), placed.corners.end(), before);
+  placed.corners.erase(std::unique(placed.corners.begin(), placed.corners.end()), placed.corners.end());
+}
+
+}  // namespace
+
 template <int Dim>
 void Colliders<Dim>::add(Obstacle<Dim> obstacle) {
   SimplexBvh<Dim> bvh(std::move(obstacle.facets));
   obstacle.facets.clear();
-  Placed placed{std::move(obstacle), std::move(bvh), {}, 0.0, {}, {}, Mat<Dim>::Zero(), {}, {}};
+  Placed placed{std::move(obstacle), std::move(bvh), {}, 0.0, {}, {}, {}, {}, Mat<Dim>::Zero(), {}, {}};
   placed.pivot = placed.obstacle.motion.pivot;
+  if (placed.obstacle.mass) make_body(placed);
   for (const auto& facet : placed.bvh.simplices())
     for (const Vec<Dim>& corner : facet) placed.reach = std::max(placed.reach, (corner - placed.pivot).norm());
+  has_bodies_ = has_bodies_ || placed.body;
   max_slide_ = std::max(max_slide_, placed.obstacle.surface_velocity.norm());
   max_girth_ = std::max(max_girth_, placed.obstacle.wall ? wall_guard : 1.0);
   placed_.push_back(std::move(placed));
@@ -227,8 +267,11 @@ bool Colliders<Dim>::has_walls() const {
 template <int Dim>
 double Colliders<Dim>::speed_bound(double begin, double end) const {
   double speed = 0.0;
-  for (const Placed& p : placed_)
-    speed = std::max(speed, smelt::speed_bound<Dim>(p.obstacle.motion, begin, end, p.reach) + p.obstacle.surface_velocity.norm());
+  for (const Placed& p : placed_) {
+    const double of_motion = p.body ? p.body->state.velocity.norm() + p.reach * skew_angle<Dim>(p.body->spin())
+                                    : smelt::speed_bound<Dim>(p.obstacle.motion, begin, end, p.reach);
+    speed = std::max(speed, of_motion + p.obstacle.surface_velocity.norm());
+  }
   return speed;
 }
 
@@ -236,9 +279,13 @@ template <int Dim>
 void Colliders<Dim>::place_at(double time) {
   for (Placed& p : placed_) {
     p.gone = time >= p.obstacle.until;
-    if (p.obstacle.motion.still()) continue;
-    p.begin = p.end = pose_at(p.obstacle.motion, time);
     p.turn.setZero();
+    if (p.body) {
+      p.begin = p.end = p.body->pose();
+      p.twist = {p.body->state.velocity, p.body->state.centre, p.body->spin()};
+    }
+    if (p.body || p.obstacle.motion.still()) continue;
+    p.begin = p.end = pose_at(p.obstacle.motion, time);
     p.twist = twist_at(p.obstacle.motion, time);
     p.acceleration = acceleration_at(p.obstacle.motion, time);
   }
@@ -255,10 +302,9 @@ double Colliders<Dim>::clearance(const Vec<Dim>& point, double limit) const {
 
 template <int Dim>
 void Colliders<Dim>::begin_step(double time, double dt) {
-  step_way_ = 0.0;
   step_end_ = time + dt;
   for (Placed& p : placed_) {
-    if (p.obstacle.motion.still()) continue;
+    if (p.body || p.obstacle.motion.still()) continue;
     p.end = pose_at(p.obstacle.motion, time + dt);
     // A spin may go round more than half a turn.
     if (!p.obstacle.motion.spin.isZero(0.0))
@@ -268,8 +314,13 @@ void Colliders<Dim>::begin_step(double time, double dt) {
     const Vec<Dim> from = p.begin.to_world(p.pivot), to = p.end.to_world(p.pivot);
     p.twist = {(to - from) / dt, to, p.turn / dt};
     p.acceleration = acceleration_at(p.obstacle.motion, time + dt);
-    step_way_ = std::max(step_way_, (to - from).norm() + p.reach * skew_angle<Dim>(p.turn));
   }
+  if (has_bodies_) move_bodies(placed_, dt);
+  step_way_ = 0.0;
+  for (const Placed& p : placed_)
+    if (p.moving())
+      step_way_ = std::max(
+          step_way_, (p.end.to_world(p.pivot) - p.begin.to_world(p.pivot)).norm() + p.reach * skew_angle<Dim>(p.turn));
 }
 
 template <int Dim>
@@ -281,12 +332,48 @@ bool Colliders<Dim>::end_step() {
     const bool gone = step_end_ >= p.obstacle.until;
     vanished = vanished || gone != p.gone;
     p.gone = gone;
+    if (!p.body) continue;
+    p.body->state.rotation = p.end.rotation;
+    p.body->state.centre = p.end.to_world(p.pivot);
   }
   return vanished;
 }
 
 template <int Dim>
-bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, Vec<Dim>& transport, Vec<Dim>& velocity) const {
+std::vector<BodyState<Dim>> Colliders<Dim>::body_states() const {
+  std::vector<BodyState<Dim>> states;
+  for (const Placed& p : placed_)
+    if (p.body) states.push_back(p.body->state);
+  return states;
+}
+
+template <int Dim>
+void Colliders<Dim>::set_body_states(std::span<const BodyState<Dim>> states) {
+  std::size_t k = 0;
+  for (Placed& p : placed_)
+    if (p.body) {
+      CHECK_LT(k, states.size());
+      p.body->state = states[k++];
+    }
+  CHECK_EQ(k, states.size());
+}
+
+template <int Dim>
+void Colliders<Dim>::kick_bodies(const Vec<Dim>& gravity, double dt) {
+  for (Placed& p : placed_)
+    if (p.body) kick_body(*p.body, gravity, dt);
+}
+
+template <int Dim>
+void Colliders<Dim>::set_body_loads(std::span<const Load<Dim>> loads) {
+  CHECK_EQ(loads.size(), placed_.size());
+  for (std::size_t k = 0; k < placed_.size(); ++k)
+    if (placed_[k].body) placed_[k].body->load = loads[k];
+}
+
+template <int Dim>
+bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, Vec<Dim>& transport, Vec<Dim>& velocity,
+                                 std::vector<BodyHit<Dim>>* hits) const {
   // A response never lengthens the path relative to what was hit, and each obstacle comes nearer by its own way: twice the longest, since it
   // may be returned. Twice the radius: a sphere that starts inside an obstacle is first moved out, by up to its radius.
   const double reach = 2.0 * radius + dt * (transport.norm() + 2.0 * max_slide_) + 3.0 * step_way_;
@@ -299,6 +386,7 @@ bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, V
   push_out<Dim>(placed_, near, radius, position);
 
   Moving<Dim> sphere{position, transport, velocity};
+  sphere.hits = hits;
   int bounces = 0;
   const int n_legs = count_legs<Dim>(placed_, near, radius);
   for (int leg = 1; leg <= n_legs; ++leg) {

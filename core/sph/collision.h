@@ -3,9 +3,11 @@
 
 #include "core/geometry/motion.h"
 #include "core/geometry/simplex_bvh.h"
+#include "core/sph/rigid_body.h"
 
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace smelt {
@@ -29,6 +31,9 @@ struct Obstacle {
   Vec<Dim> surface_velocity = Vec<Dim>::Zero();
   std::optional<double> temperature = std::nullopt;  ///< [K]; absent: no heat passes
   double until = std::numeric_limits<double>::infinity();  ///< it vanishes then [s]
+  /// [kg]: a rigid body, which goes where it is pushed; its motion says but velocity and spin at the start. Its facets
+  /// must be closed.
+  std::optional<double> mass = std::nullopt;
 };
 
 /// An obstacle where it is now. Its facets stay at rest in the BVH: queries are taken to where it is at rest instead.
@@ -38,6 +43,8 @@ struct PlacedObstacle {
   SimplexBvh<Dim> bvh;
   Vec<Dim> pivot = Vec<Dim>::Zero();  ///< it turns about, at rest [m]
   double reach = 0.0;                 ///< of the farthest corner from the pivot [m]
+  std::optional<RigidBody<Dim>> body;  ///< what has a mass; its pivot is the centre of mass
+  std::vector<Vec<Dim>> corners;       ///< of a body, each once, at rest [m]
 
   // The step being made, or none: then begin and end are the same.
   Pose<Dim> begin, end;
@@ -59,6 +66,14 @@ struct PlacedObstacle {
   }
 };
 
+/// What a particle got of a rigid body that was taken for infinitely heavy.
+template <int Dim>
+struct BodyHit {
+  std::uint32_t obstacle;
+  Vec<Dim> gain;   ///< of the particle's velocity [m/s]
+  Vec<Dim> place;  ///< of its centre [m]
+};
+
 /// Obstacles of one scene. Facets are two-sided to a swept particle: it stays on the side it is on.
 template <int Dim>
 class Colliders {
@@ -70,12 +85,13 @@ class Colliders {
 
   bool empty() const { return placed_.empty(); }
   bool has_walls() const;
+  bool has_bodies() const { return has_bodies_; }
   const std::vector<Placed>& placed() const { return placed_; }
 
   /// At least the speed [m/s] of any point of an obstacle, with the sliding of its surface, between `begin` and `end` [s].
   double speed_bound(double begin, double end) const;
 
-  /// Puts every obstacle where it is at `time` [s], and takes away those that have vanished.
+  /// Puts every obstacle where it is at `time` [s], rigid bodies where their states have them, and takes away those that have vanished.
   void place_at(double time);
 
   /// Begins the step from `time`, at which everything was placed, to `time` + `dt` [s]: from now on move_sphere() meets what moves.
@@ -84,18 +100,37 @@ class Colliders {
   /// Ends it: everything is where it has moved to. Returns whether an obstacle vanished.
   bool end_step();
 
+  /// The states of the rigid bodies, in the order of their obstacles, and how to go on from them.
+  std::vector<BodyState<Dim>> body_states() const;
+  void set_body_states(std::span<const BodyState<Dim>> states);
+
+  /// Half a kick of every rigid body by its load and gravity [m/s^2].
+  void kick_bodies(const Vec<Dim>& gravity, double dt);
+
+  /// What the fluid does to the bodies, one load an obstacle.
+  void set_body_loads(std::span<const Load<Dim>> loads);
+
+  /// An impulse [kg m/s] at x on the body of an obstacle.
+  void strike_body(std::size_t obstacle, const Vec<Dim>& x, const Vec<Dim>& impulse) {
+    placed_[obstacle].body->strike(x, impulse);
+  }
+
   /// The farthest that any point of an obstacle moves in this step, at most [m].
   double step_way() const { return step_way_; }
 
-  /// Moves a sphere of radius `radius` [m] with `transport` velocity for the step of `dt` [s] that has begun; at each hit it goes on with
-  /// the new velocity, in the frame of what it hit, and may hit again, up to `max_bounces`. Then, where obstacles move, the sphere gives in: it goes on as one of
-  /// a thousandth of the radius (`squeezed`), so that it is pressed flat before it changes sides. A sphere that overlaps an obstacle at the
-  /// start is first moved out to touch it. `velocity` [m/s] gets the same answers as `transport`. A wall holds fluid off by its pressure:
-  /// there the sphere is but a guard, of `wall_guard` times the radius. Returns whether anything was hit.
+  /// Moves a sphere of radius `radius` [m] with `transport` velocity for the step of `dt` [s] that has begun; at each
+  /// hit it goes on with the new velocity, in the frame of what it hit, and may hit again, up to `max_bounces`. Then,
+  /// where obstacles move,
+  /// the sphere gives in: it goes on as one of a thousandth of the radius (`squeezed`), so that it is pressed flat
+  /// before it changes sides. A sphere that overlaps an obstacle at the start is first moved out to touch it.
+  /// `velocity` [m/s] gets the same answers as `transport`. A wall holds fluid off by its pressure: there the sphere is
+  /// but a guard, of `wall_guard` times the radius. Returns whether anything was hit.
   ///
-  /// Relative to an obstacle that turns, a straight way is curved. It is taken along chords, whose ends are exact; they are so short that they
-  /// leave it by no more than a tenth of the guard. So a sphere changes sides at no speed.
-  bool move_sphere(double radius, double dt, Vec<Dim>& position, Vec<Dim>& transport, Vec<Dim>& velocity) const;
+  /// Relative to an obstacle that turns, a straight way is curved. It is taken along chords, whose ends are exact; they
+  /// are so short that they leave it by no more than a tenth of the guard. So a sphere changes sides at no speed. Hits
+  /// of rigid bodies are appended to `hits`, where given.
+  bool move_sphere(double radius, double dt, Vec<Dim>& position, Vec<Dim>& transport, Vec<Dim>& velocity,
+                   std::vector<BodyHit<Dim>>* hits = nullptr) const;
 
   /// Farther than this from all obstacles nothing is touched, and move_sphere() is a plain position += dt transport [m].
   double reach(double radius, double dt, const Vec<Dim>& transport) const {
@@ -115,6 +150,7 @@ class Colliders {
   double step_way_ = 0.0;
   double step_end_ = 0.0;  ///< [s]
   double max_girth_ = 0.0;  ///< of spheres at any obstacle, in radii
+  bool has_bodies_ = false;
 };
 
 }  // namespace smelt

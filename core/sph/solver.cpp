@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 namespace smelt {
@@ -79,7 +80,8 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
   if (terms_.gas && (colliders_.has_walls() || parameters_.density_diffusion > 0.0))
     fail("simulation: walls and density diffusion are for liquids, not for an ideal gas");
   if (colliders_.has_walls())
-    walls_.emplace(WallKernel<Dim>(parameters_.smoothing_length, parameters_.kernel), std::pow(parameters_.particle_volume, 1.0 / Dim),
+    walls_.emplace(WallKernel<Dim>(parameters_.smoothing_length, parameters_.kernel),
+                   std::pow(parameters_.particle_volume, 1.0 / Dim),
                    Colliders<Dim>::wall_guard * particle_radius<Dim>(parameters_.particle_volume));
   open_boundaries();
   resize_derived();
@@ -140,6 +142,7 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
   colliders_.begin_step(time, dt);
   drift(dt);
   if (colliders_.end_step()) travelled_ = travelled_at_walls_ = std::numeric_limits<double>::infinity();  // the lists name an obstacle that is not there
+  if (colliders_.has_bodies()) strike_bodies();
 
   if (2.0 * travelled_ > parameters_.skin * parameters_.smoothing_length) search_neighbours();
   if (walls_) {
@@ -343,8 +346,12 @@ void Solver<Dim, Real>::evaluate_forces() {
     for (std::size_t i = begin; i < end; ++i)
       for (int a = 0; a < Dim; ++a) acceleration_[i][a] = force_sums_[i][a] + parameters_.gravity[a];
   });
-  if (walls_)
-    parallel_for_each(walls_->neighbours().size(), [&](std::size_t k) { apply_wall_forces(walls_->neighbours()[k]); });
+  if (walls_) {
+    const std::size_t n_walled = walls_->neighbours().size();
+    if (colliders_.has_bodies()) body_forces_.assign(n_walled * colliders_.placed().size(), Vec<Dim>::Zero());
+    parallel_for_each(n_walled, [&](std::size_t slot) { apply_wall_forces(slot); });
+    if (colliders_.has_bodies()) sum_body_loads();
+  }
   if (!particles_.driven.empty())
     parallel_for_each(particles_.size(), [&](std::size_t i) {
       if (is_driven(i)) acceleration_[i].setZero();
@@ -352,15 +359,39 @@ void Solver<Dim, Real>::evaluate_forces() {
 }
 
 template <int Dim, typename Real>
-void Solver<Dim, Real>::apply_wall_forces(const WallNeighbour<Dim>& wall) {
+void Solver<Dim, Real>::apply_wall_forces(std::size_t slot) {
+  const WallNeighbour<Dim>& wall = walls_->neighbours()[slot];
   if (wall.contacts.empty()) return;
   const auto i = static_cast<std::size_t>(wall.particle);
   Mat<Dim> corrected_stress = Mat<Dim>::Zero();
   if (terms_.pair.stress)
     for (int a = 0; a < Dim; ++a)
       for (int b = 0; b < Dim; ++b) corrected_stress(a, b) = force_record(i)[1 + a * Dim + b];
-  acceleration_[i] += wall_acceleration<Dim>(wall, colliders_, particles_.density[i], pressure(i), corrected_stress, pressure_gradient_[i],
-                                             parameters_.gravity);
+  for (const WallContact<Dim>& contact : wall.contacts) {
+    const PlacedObstacle<Dim>& placed = colliders_.placed()[contact.obstacle];
+    const Vec<Dim> a = contact_acceleration<Dim>(contact, placed.obstacle.response, particles_.density[i], pressure(i),
+                                                 corrected_stress, pressure_gradient_[i], parameters_.gravity);
+    acceleration_[i] += a;
+    if (placed.body) body_forces_[slot * colliders_.placed().size() + contact.obstacle] -= mass(i) * a;
+  }
+}
+
+/// What the fluid at walls does to rigid bodies, at the particles' places, so that body and fluid together keep their
+/// angular momentum.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::sum_body_loads() {
+  const std::size_t n_obstacles = colliders_.placed().size();
+  std::vector<Load<Dim>> loads(n_obstacles);
+  for (std::size_t slot = 0; walls_ && slot < walls_->neighbours().size(); ++slot)
+    for (std::size_t o = 0; o < n_obstacles; ++o) {
+      if (!colliders_.placed()[o].body) continue;
+      const Vec<Dim>& force = body_forces_[slot * n_obstacles + o];
+      const Vec<Dim> arm = particles_.position[static_cast<std::size_t>(walls_->neighbours()[slot].particle)] -
+                           colliders_.placed()[o].body->state.centre;
+      loads[o].force += force;
+      loads[o].torque += force * arm.transpose() - arm * force.transpose();
+    }
+  colliders_.set_body_loads(loads);
 }
 
 // -------------------------------------------------------------------------------------------------------------- leap-frog
@@ -370,18 +401,20 @@ void Solver<Dim, Real>::kick(double dt) {
   parallel_for_each(particles_.size(), [&](std::size_t i) { particles_.velocity[i] += dt * acceleration_[i]; });
   if (terms_.gas)
     parallel_for_each(particles_.size(), [&](std::size_t i) { particles_.internal_energy[i] += dt * energy_rate_[i]; });
+  if (colliders_.has_bodies()) colliders_.kick_bodies(parameters_.gravity, dt);
 }
 
 /// Past obstacles. Nothing is looked up while it cannot reach any: the same bytes, at no cost.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::move_particle(std::size_t i, double radius, double dt, Vec<Dim>& transport) {
+void Solver<Dim, Real>::move_particle(std::size_t i, double radius, double dt, Vec<Dim>& transport,
+                                      std::vector<BodyHit<Dim>>* hits) {
   const double nearer = colliders_.step_way();
   if (clearance_[i] > colliders_.reach(radius, dt, transport)) {
     clearance_[i] -= dt * transport.norm() + nearer;
     particles_.position[i] += dt * transport;
     return;
   }
-  const bool hit = colliders_.move_sphere(radius, dt, particles_.position[i], transport, particles_.velocity[i]);
+  const bool hit = colliders_.move_sphere(radius, dt, particles_.position[i], transport, particles_.velocity[i], hits);
   // What hits will hit again.
   clearance_[i] = hit ? 0.0 : colliders_.clearance(particles_.position[i], 16.0 * radius) - nearer;
 }
@@ -389,24 +422,62 @@ void Solver<Dim, Real>::move_particle(std::size_t i, double radius, double dt, V
 template <int Dim, typename Real>
 void Solver<Dim, Real>::drift(double dt) {
   const double radius = particle_radius<Dim>(parameters_.particle_volume);
-  const double farthest = deterministic_reduce(
-      particles_.size(), 0.0,
-      [&](std::size_t i) {
-        Vec<Dim>& velocity = particles_.velocity[i];
-        // XSPH moves particles with a smoothed velocity and leaves the velocity itself alone  [Monaghan 1989].
-        Vec<Dim> transport = velocity;
-        if (terms_.pair.xsph && !is_driven(i)) transport += xsph_[i];
-        const Vec<Dim> before = particles_.position[i];
-        if (colliders_.empty() || is_driven(i))
-          particles_.position[i] += dt * transport;
-        else
-          move_particle(i, radius, dt, transport);
-        if (terms_.pair.xsph) transport_[i] = transport;
-        return (particles_.position[i] - before).norm();
+  const std::size_t n_blocks = (particles_.size() + block_size - 1) / block_size;
+  std::vector<double> farthest(n_blocks, 0.0);
+  body_hits_.resize(colliders_.has_bodies() ? n_blocks : 0);
+  parallel_blocks(
+      n_blocks,
+      [&](std::size_t block, std::size_t) {
+        std::vector<ParticleHit<Dim>>* hits = colliders_.has_bodies() ? &body_hits_[block] : nullptr;
+        if (hits) hits->clear();
+        for (std::size_t i = block * block_size; i < std::min(particles_.size(), (block + 1) * block_size); ++i)
+          farthest[block] = std::max(farthest[block], drift_particle(i, radius, dt, hits));
       },
-      [](double a, double b) { return std::max(a, b); });
-  travelled_ += farthest + colliders_.step_way();
-  travelled_at_walls_ += farthest + colliders_.step_way();
+      1);
+  const double way = std::accumulate(farthest.begin(), farthest.end(), 0.0, [](double a, double b) { return std::max(a, b); }) +
+                     colliders_.step_way();
+  travelled_ += way;
+  travelled_at_walls_ += way;
+}
+
+/// Returns how far it goes [m].
+template <int Dim, typename Real>
+double Solver<Dim, Real>::drift_particle(std::size_t i, double radius, double dt, std::vector<ParticleHit<Dim>>* hits) {
+  Vec<Dim>& velocity = particles_.velocity[i];
+  // XSPH moves particles with a smoothed velocity and leaves the velocity itself alone  [Monaghan 1989].
+  Vec<Dim> transport = velocity;
+  if (terms_.pair.xsph && !is_driven(i)) transport += xsph_[i];
+  const Vec<Dim> before = particles_.position[i];
+  if (colliders_.empty() || is_driven(i)) {
+    particles_.position[i] += dt * transport;
+  } else {
+    thread_local std::vector<BodyHit<Dim>> of_particle;
+    of_particle.clear();
+    move_particle(i, radius, dt, transport, hits ? &of_particle : nullptr);
+    for (const BodyHit<Dim>& hit : of_particle) hits->push_back({static_cast<std::int32_t>(i), hit});
+  }
+  if (terms_.pair.xsph) transport_[i] = transport;
+  return (particles_.position[i] - before).norm();
+}
+
+/// The particles that hit a rigid body took it for infinitely heavy. All the hits of a step together are one inelastic
+/// blow: each particle keeps the share 1/(1 + sum m K) of what it got, K the compliance of the body at each hit, at
+/// most; and the body gets the opposite. However light the body, that neither overshoots nor loses momentum. The way of
+/// the particles stays as it was: they changed no side.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::strike_bodies() {
+  std::vector<double> burden(colliders_.placed().size(), 0.0);
+  for (const auto& block : body_hits_)
+    for (const auto& [i, hit] : block)
+      burden[hit.obstacle] +=
+          mass(static_cast<std::size_t>(i)) * colliders_.placed()[hit.obstacle].body->compliance_bound(hit.place);
+  for (const auto& block : body_hits_)
+    for (const auto& [index, hit] : block) {
+      const auto i = static_cast<std::size_t>(index);
+      const double kept = 1.0 / (1.0 + burden[hit.obstacle]);
+      particles_.velocity[i] -= (1.0 - kept) * hit.gain;
+      colliders_.strike_body(hit.obstacle, particles_.position[i], -mass(i) * kept * hit.gain);
+    }
 }
 
 template class Solver<3, float>;

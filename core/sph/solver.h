@@ -61,6 +61,13 @@ struct SolverTerms {
   bool diffusion = false;  ///< density diffusion
 };
 
+/// A particle that hit a rigid body.
+template <int Dim>
+struct ParticleHit {
+  std::int32_t particle;
+  BodyHit<Dim> hit;
+};
+
 /// Advances particles in time by leap-frog (kick-drift-kick). Real (float or double) is what the pair loops compute in; the state is
 /// double. Results do not depend on the number of threads.
 template <int Dim, typename Real>
@@ -78,6 +85,7 @@ class Solver {
   const std::vector<Vec<Dim>>& acceleration() const { return acceleration_; }  ///< [m/s^2], same order
   /// Indices from the number of particles on name periodic images.
   const NeighbourLists& neighbours() const { return lists_; }
+  const Colliders<Dim>& colliders() const { return colliders_; }
   const SolverParameters<Dim>& parameters() const { return parameters_; }
   const std::vector<Material>& materials() const { return materials_; }
   /// What came and went; without entries in a scene without emitters and outflow.
@@ -114,7 +122,8 @@ class Solver {
   void evaluate_pressure_gradients();
   void apply_density_diffusion();
   void apply_wall_rates(const WallNeighbour<Dim>& wall);
-  void apply_wall_forces(const WallNeighbour<Dim>& wall);
+  void apply_wall_forces(std::size_t slot);
+  void sum_body_loads();
   Real* force_record(std::size_t i) { return fields_.force.data() + i * PairFields<Dim, Real>::force_stride(terms_.pair); }
   double pressure(std::size_t i) const;
   void integrate_rates(double dt);
@@ -124,7 +133,9 @@ class Solver {
   void evaluate_forces();
   void kick(double dt);
   void drift(double dt);
-  void move_particle(std::size_t i, double radius, double dt, Vec<Dim>& transport);
+  void move_particle(std::size_t i, double radius, double dt, Vec<Dim>& transport, std::vector<BodyHit<Dim>>* hits);
+  double drift_particle(std::size_t i, double radius, double dt, std::vector<ParticleHit<Dim>>* hits);
+  void strike_bodies();
   double fastest_sound() const;
   double internal_energy(std::size_t i) const { return terms_.gas ? particles_.internal_energy[i] : 0.0; }
   TimeStepInput time_step_input() const;
@@ -167,6 +178,9 @@ class Solver {
   std::vector<std::array<Real, Dim>> force_sums_;
   std::vector<Vec<Dim>> acceleration_;
   std::vector<Real> energy_rate_;  ///< of an ideal gas [W/kg], or empty
+  std::vector<Vec<Dim>>
+      body_forces_;  ///< on each obstacle by each wall neighbour [N]; like the next, empty without rigid bodies
+  std::vector<std::vector<ParticleHit<Dim>>> body_hits_;  ///< of the last drift, in blocks of particles
   std::vector<Vec<Dim>> transport_;  ///< velocity that particles move with: XSPH's where it is on, else empty
   std::vector<Vec<Dim>> xsph_;       ///< correction at the last rate evaluation, or empty
 };

@@ -57,15 +57,22 @@ void accumulate_wall_rates(const WallNeighbour<Dim>& wall, const Colliders<Dim>&
   for (int k = 0; k < n_symmetric<Dim>; ++k) sums.position_moment[k] += static_cast<Real>(moment[k]);
 }
 
-/// int (p_w - p) grad_w dV over the solid [Pa/m], where the pressure goes on with the gradient `along` [Pa/m] that it has along the wall
-/// and with rho (g - a_w) across it.
+/// int (p_w - p) grad_w dV over the solid behind one plane [Pa/m], where the pressure goes on with the gradient `along`
+/// [Pa/m] that it has along the wall and with rho (g - a_w) across it.
+template <int Dim>
+Vec<Dim> contact_pressure_moment(const WallContact<Dim>& contact, const Vec<Dim>& along, double rho,
+                                 const Vec<Dim>& gravity) {
+  const Vec<Dim> gradient =
+      along + (rho * (gravity - contact.acceleration) - along).dot(contact.normal) * contact.normal;
+  return contact.solid * gradient - contact.first.dot(gradient) * contact.normal;
+}
+
+/// The same over the whole solid.
 template <int Dim>
 Vec<Dim> wall_pressure_moment(const WallNeighbour<Dim>& wall, const Vec<Dim>& along, double rho, const Vec<Dim>& gravity) {
   Vec<Dim> sum = Vec<Dim>::Zero();
-  for (const WallContact<Dim>& contact : wall.contacts) {
-    const Vec<Dim> gradient = along + (rho * (gravity - contact.acceleration) - along).dot(contact.normal) * contact.normal;
-    sum += contact.solid * gradient - contact.first.dot(gradient) * contact.normal;
-  }
+  for (const WallContact<Dim>& contact : wall.contacts)
+    sum += contact_pressure_moment<Dim>(contact, along, rho, gravity);
   return sum;
 }
 
@@ -84,18 +91,18 @@ Vec<Dim> compute_pressure_gradient(const PressureGradientSums<Dim, Real>& sums, 
   return compute_gradient_correction<Dim>(moment + wall->moment) * (gradient + wall_pressure_moment<Dim>(*wall, of_fluid, rho, gravity));
 }
 
-/// Acceleration [m/s^2] by pressure p [Pa] and corrected extra stress S L [Pa], P standing for held_by_wall: the adjoints of the rates
-/// above, so that a wall takes just the power that the fluid at it is deformed with, and the pressure's gradient in the solid,
-///   1/rho [ sum push p n - sum stretch P S L n - int (p_w - p) grad_w dV ].
+/// Acceleration [m/s^2] by pressure p [Pa] and corrected extra stress S L [Pa] at one plane, P standing for
+/// held_by_wall: the adjoints of the rates above, so that a wall takes just the power that the fluid at it is deformed
+/// with, and the pressure's gradient in the solid,
+///   1/rho [ push p n - stretch P S L n - int (p_w - p) grad_w dV ].
 template <int Dim>
-Vec<Dim> wall_acceleration(const WallNeighbour<Dim>& wall, const Colliders<Dim>& colliders, double rho, double pressure,
-                           const Mat<Dim>& corrected_stress, const Vec<Dim>& pressure_gradient, const Vec<Dim>& gravity) {
-  Vec<Dim> force = -wall_pressure_moment<Dim>(wall, pressure_gradient, rho, gravity);
-  for (const WallContact<Dim>& contact : wall.contacts) {
-    const Vec<Dim>& n = contact.normal;
-    const ContactResponse& response = colliders.placed()[contact.obstacle].obstacle.response;
-    force += contact.push * pressure * n - contact.stretch * held_by_wall<Dim>(corrected_stress * n, n, response);
-  }
+Vec<Dim> contact_acceleration(const WallContact<Dim>& contact, const ContactResponse& response, double rho,
+                              double pressure, const Mat<Dim>& corrected_stress, const Vec<Dim>& pressure_gradient,
+                              const Vec<Dim>& gravity) {
+  const Vec<Dim>& n = contact.normal;
+  const Vec<Dim> force = contact.push * pressure * n -
+                         contact.stretch * held_by_wall<Dim>(corrected_stress * n, n, response) -
+                         contact_pressure_moment<Dim>(contact, pressure_gradient, rho, gravity);
   return force / rho;
 }
 

@@ -77,9 +77,9 @@ TEST(BuildSimulation, CollidersCarryWhatTheSceneSaysOfThem) {
   RenderScene view = build_view(scene);
   const auto at_start = view.colliders;
   ASSERT_EQ(at_start.size(), 1u);
-  place_colliders(scene, 2.0, at_start, view);
+  place_colliders(scene, 2.0, {}, at_start, view);
   EXPECT_EQ(view.colliders[0].mesh.vertices[7], Vec3(at_start[0].mesh.vertices[7] - Vec3(0, 1, 0)));
-  place_colliders(scene, 0.0, at_start, view);
+  place_colliders(scene, 0.0, {}, at_start, view);
   EXPECT_EQ(view.colliders[0].mesh.vertices[7], at_start[0].mesh.vertices[7]);
 }
 
@@ -155,6 +155,38 @@ TEST(BuildSimulation, NewtonianScenesNeedNoRelaxedStress) {
   EXPECT_EQ(setup.parameters.shear_wave_speed, 0.0);
   EXPECT_EQ(setup.materials[0].rheology.yield_stress.cold, 0.0);
   EXPECT_EQ(setup.materials[0].rheology.consistency.hot, 1.0);
+}
+
+TEST(BuildSimulation, RigidBodiesAreWeighedAndSound) {
+  Scene scene = bunny_scene({"particles.count=500"});
+  scene.colliders.push_back(scene.colliders[0]);
+  ColliderSettings& ball = scene.colliders[1];
+  ball.mesh = "assets/sphere.obj";
+  ball.placement.scale = 0.1;
+  ball.placement.translate = Vec3(0, 3, 0);
+  ball.density = 7800.0;
+  const SimulationSetup setup = build_simulation(scene);
+  EXPECT_NEAR(*setup.obstacles[1].mass, 7800.0 * 4.18879e-3, 0.02 * 7800.0 * 4.18879e-3);
+  const Colliders<3> colliders = build_colliders(setup);
+  ASSERT_EQ(colliders.body_states().size(), 1u);
+  EXPECT_NEAR((colliders.body_states()[0].centre - Vec3(0, 3, 0)).norm(), 0.0, 1e-9);
+
+  const auto error_with = [&](const std::string& mesh) -> std::string {
+    ball.mesh = mesh;
+    try {
+      build_simulation(scene);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_NE(error_with("assets/bad/open_box.obj").find("a rigid body needs a closed mesh, and this one has holes"),
+            std::string::npos);
+  EXPECT_NE(error_with("assets/bad/flat.obj"), "");
+  ball.mesh = "assets/bad/inverted_box.obj";
+  const SimulationSetup turned = build_simulation(scene);
+  EXPECT_GT(*turned.obstacles[1].mass, 0.0);
+  EXPECT_EQ(turned.warnings.size(), 1u);
 }
 
 }  // namespace

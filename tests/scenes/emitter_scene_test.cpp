@@ -142,10 +142,10 @@ TEST(EmitterScene, VanishedColliderIsNotDrawn) {
   const Scene scene = lava_scene({"collider.0.until_s=0.5"});
   RenderScene view = build_view(scene);
   const auto at_start = view.colliders;
-  place_colliders(scene, 0.4, at_start, view);
+  place_colliders(scene, 0.4, {}, at_start, view);
   EXPECT_EQ(view.colliders[0].mesh.triangles.size(), at_start[0].mesh.triangles.size());
   EXPECT_EQ(view.colliders[0].normals.size(), at_start[0].mesh.vertices.size()) << "a terrain is drawn smooth";
-  place_colliders(scene, 0.5, at_start, view);
+  place_colliders(scene, 0.5, {}, at_start, view);
   EXPECT_TRUE(view.colliders[0].mesh.triangles.empty());
 }
 

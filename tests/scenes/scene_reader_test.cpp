@@ -110,6 +110,38 @@ TEST(SceneReader, ContradictionsAndNames) {
   expect_error(replaced(good_scene, "heat = {", "# heat = {"), "temperature_K", "has no heat");
 }
 
+TEST(SceneReader, KeyframesAreRisingAndMoreThanOne) {
+  const std::string collider = replaced(good_scene, "mesh = \"ground\"", "mesh = \"assets/sphere.obj\"\n");
+  const auto keys = [&](const std::string& list) { return collider + "keyframes = [" + list + "]\n"; };
+  EXPECT_EQ(error_of(keys("{ time_s = 0.0 }, { time_s = 1.0, translate_m = [0, 1, 0], rotate_deg = [0, 0, 170] }")),
+            "");
+  expect_error(keys("{ time_s = 1.0 }, { time_s = 0.5 }"), ":23: collider.0.keyframes.1.time_s",
+               "must be later than the keyframe before, at 1 s, is 0.5; put the keyframes in order");
+  expect_error(keys("{ time_s = 1.0 }"), ":23: collider.0.keyframes", "one keyframe moves nothing: give two or more");
+  expect_error(keys("{ time_s = 0.0 }, { translate_m = [0, 1, 0] }"), "collider.0.keyframes.1.time_s", "missing");
+  expect_error(keys("{ time_s = 0.0 }, { time_s = 1.0, rotate_deg = [0, 360, 0] }"), "keyframes.1.rotate_deg",
+               "may go either way");
+  expect_error(keys("{ time_s = 0.0 }, { time_s = 1.0 }") + "velocity_m_s = [1, 0, 0]\n", "collider.0.velocity_m_s",
+               "not both");
+  expect_error(keys("{ time_s = 0.0 }, { time_s = 1.0 }") + "angular_velocity_rad_s = [1, 0, 0]\n",
+               "collider.0.angular_velocity_rad_s", "not both");
+  expect_error(std::string(good_scene) + "keyframes = [{ time_s = 0.0 }, { time_s = 1.0 }]\n", "collider.0.keyframes",
+               "cannot move");
+  expect_error(std::string(good_scene) + "angular_velocity_rad_s = [0, 1, 0]\n", "collider.0.angular_velocity_rad_s",
+               "cannot move");
+}
+
+TEST(SceneReader, RigidBodies) {
+  const std::string collider = replaced(good_scene, "mesh = \"ground\"", "mesh = \"assets/sphere.obj\"\n");
+  EXPECT_EQ(error_of(collider + "density_kg_m3 = 7800.0\nvelocity_m_s = [1, 0, 0]\n"), "");
+  expect_error(collider + "mass_kg = 0.0\n", ":23: collider.0.mass_kg", "above 0, is 0");
+  expect_error(collider + "mass_kg = 1.0\ndensity_kg_m3 = 7800.0\n", ":24: collider.0.density_kg_m3", "not both");
+  expect_error(collider + "mass_kg = 1.0\nkeyframes = [{ time_s = 0.0 }, { time_s = 1.0 }]\n", "collider.0.keyframes",
+               "a rigid body goes where it is pushed");
+  expect_error(collider + "mass_kg = 1.0\npivot_m = [0, 0, 0]\n", "collider.0.pivot_m", "centre of mass");
+  expect_error(std::string(good_scene) + "mass_kg = 1.0\n", "collider.0.mass_kg", "cannot move");
+}
+
 TEST(SceneReader, PeriodicBox) {
   const std::string box = std::string(good_scene) + "[periodic]\n";
   expect_error(box, "periodic.lower_m: missing", "periodic.upper_m: missing");
