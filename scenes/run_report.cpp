@@ -39,6 +39,15 @@ ordered_json cost_json(const StageCost& cost) {
   return {{"seconds", cost.seconds}, {"bytes", cost.bytes}};
 }
 
+ordered_json heat_json(double enthalpy, const HeatLedger& passed) {
+  return {{"enthalpy_J", enthalpy},
+          {"since_last_frame_J",
+           {{"radiated", passed.radiated},
+            {"convected", passed.convected},
+            {"to_walls", passed.to_walls},
+            {"from_sources", passed.from_sources}}}};
+}
+
 }  // namespace
 
 void StepStatistics::add(const TimeStep& step) {
@@ -69,7 +78,8 @@ void RunReport::set_run(const std::string& scene_text, std::uint64_t scene_hash,
 }
 
 void RunReport::set_simulated(int frame, double time, const StepStatistics& steps, const Diagnostics<3>& d,
-                              const std::optional<MassAccount>& mass, const StageCost& cost) {
+                              const std::optional<MassAccount>& mass, const std::optional<HeatLedger>& heat,
+                              const StageCost& cost) {
   ordered_json terms = ordered_json::object();
   for (std::size_t k = 0; k < n_time_step_terms; ++k) terms[std::string(time_step_term_names[k])] = steps.n_by_term[k];
   ordered_json entry = {{"time_s", time},
@@ -95,6 +105,7 @@ void RunReport::set_simulated(int frame, double time, const StepStatistics& step
                                 {"imbalance", mass->initial + mass->added - mass->removed - mass->present}};
   if (mass) entry["poured_m3"] = mass->poured_volume;
   if (d.max_temperature > 0.0) entry["temperature_K"] = {{"min", d.min_temperature}, {"max", d.max_temperature}};
+  if (heat) entry["heat"] = heat_json(d.enthalpy, *heat);
   entry.update(cost_json(cost));
   document_->frame(frame)["simulate"] = entry;
   save();
