@@ -50,7 +50,10 @@ void advise_on_viscosity(const SimulationSetup& setup, Advice& advice) {
   const double acoustic = p.courant * h / p.sound_speed;
   for (const Material& m : setup.materials) {
     double nu = 0.0;
-    for (const double u : {0.0, 1.0}) nu = std::max(nu, viscosity(flow_curve_at(m.rheology, u), 0.0) / m.density);
+    for (const double u : {0.0, 1.0}) {
+      const double temperature = m.heat ? (u == 0.0 ? m.heat->cold : m.heat->hot) : 0.0;
+      nu = std::max(nu, viscosity(flow_curve_at(m.rheology, u, temperature), 0.0) / m.density);
+    }
     const double viscous = nu > 0.0 ? p.courant * h * h / (8.0 * nu) : acoustic;
     if (viscous < 0.05 * acoustic)
       advice.push_back(fmt::format(

@@ -250,6 +250,15 @@ double weigh_body(const ColliderSettings& s, TriangleMesh& mesh, std::vector<std
   return s.mass ? *s.mass : *s.density * volume;
 }
 
+void set_heat_exchange(const Scene& scene, SolverParameters<3>& p) {
+  if (scene.ambient) p.ambient = Ambient{*scene.ambient->temperature, scene.ambient->heat_transfer};
+  for (const HeatSourceSettings& s : scene.heat_sources) {
+    HeatSource<3> source{s.position, s.velocity, s.radius, s.power, s.temperature.value_or(0.0), s.heat_transfer.value_or(0.0), s.from};
+    if (s.until) source.end = *s.until;
+    p.heat_sources.push_back(source);
+  }
+}
+
 void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetup& setup) {
   SolverParameters<3>& p = setup.parameters;
   p.particle_volume = setup.particles.size() > 0 ? setup.body_volume / static_cast<double>(setup.particles.size())
@@ -273,6 +282,7 @@ void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetu
   p.period = to_period(scene);
   for (const EmitterSettings& e : scene.emitters) p.emitters.push_back(to_emitter(scene, e));
   for (const OutflowSettings& o : scene.outflows) p.outflows.push_back({{*o.lower, *o.upper}, o.removes == "outside"});
+  set_heat_exchange(scene, p);
   p.courant = scene.time_step.courant;
   p.min_time_step = scene.time_step.min_time_step;
   const Vec3 margin = Vec3::Constant(10.0 * scene_bounds.extent().maxCoeff());
@@ -298,7 +308,7 @@ double count_poured(const SimulationSetup& setup, double seconds) {
   return volume / setup.parameters.particle_volume;
 }
 
-Rheology to_rheology(const ViscositySettings& s) {
+Rheology to_rheology(const ViscositySettings& s, const std::optional<HeatProperties>& heat) {
   Rheology r;
   if (s.law == "smd") {
     r.yield_stress = *s.yield_stress;
@@ -308,6 +318,13 @@ Rheology to_rheology(const ViscositySettings& s) {
     r.rest_viscosity = s.rest_viscosity;
   } else {
     r.consistency = s.law == "newtonian" ? *s.viscosity : ThermalRange{0.0, 0.0};
+  }
+  if (!heat) return r;
+  for (ThermalRange* property : {&r.yield_stress, &r.consistency, r.jump_number ? &*r.jump_number : nullptr,
+                                 r.rest_viscosity ? &*r.rest_viscosity : nullptr}) {
+    if (!property) continue;
+    property->coldest = heat->cold;
+    property->hottest = heat->hot;
   }
   return r;
 }
@@ -326,7 +343,7 @@ SimulationSetup build_simulation(const Scene& scene) {
     setup.body_bounds.extend(bodies[k].bounds.lower);
     setup.body_bounds.extend(bodies[k].bounds.upper);
   }
-  for (const MaterialSettings& m : scene.materials) setup.materials.push_back({m.name, m.density, to_rheology(m.viscosity), m.heat});
+  for (const MaterialSettings& m : scene.materials) setup.materials.push_back({m.name, m.density, to_rheology(m.viscosity, m.heat), m.heat});
 
   Box3 scene_bounds = setup.body_bounds;
   for (const EmitterSettings& e : scene.emitters) scene_bounds.extend(e.position);

@@ -40,7 +40,7 @@ TriangleMesh import_placed_collider(const Scene& scene, const ColliderSettings& 
 /// Particles that the emitters will have poured in after `seconds` of a shot.
 double count_poured(const SimulationSetup& setup, double seconds);
 
-/// What a scene's flow law comes to.
-Rheology to_rheology(const ViscositySettings& settings);
+/// What a scene's flow law comes to. An exponential holds from cold_K to hot_K of `heat`.
+Rheology to_rheology(const ViscositySettings& settings, const std::optional<HeatProperties>& heat);
 
 }  // namespace smelt

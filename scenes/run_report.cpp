@@ -43,6 +43,15 @@ ordered_json cost_json(const StageCost& cost) {
   return {{"seconds", cost.seconds}, {"bytes", cost.bytes}};
 }
 
+ordered_json heat_json(double enthalpy, const HeatLedger& passed) {
+  return {{"enthalpy_J", enthalpy},
+          {"since_last_frame_J",
+           {{"radiated", passed.radiated},
+            {"convected", passed.convected},
+            {"to_walls", passed.to_walls},
+            {"from_sources", passed.from_sources}}}};
+}
+
 }  // namespace
 
 void StepStatistics::add(const TimeStep& step) {
@@ -73,7 +82,8 @@ void RunReport::set_run(const std::string& scene_text, std::uint64_t scene_hash,
 }
 
 void RunReport::set_simulated(int frame, double time, const StepStatistics& steps, const Diagnostics<3>& d,
-                              const std::optional<MassAccount>& mass, const std::vector<BodyPose>& bodies, const StageCost& cost) {
+                              const std::optional<MassAccount>& mass, const std::optional<HeatLedger>& heat,
+                              const std::vector<BodyPose>& bodies, const StageCost& cost) {
   ordered_json terms = ordered_json::object();
   for (std::size_t k = 0; k < n_time_step_terms; ++k) terms[std::string(time_step_term_names[k])] = steps.n_by_term[k];
   ordered_json entry = {{"time_s", time},
@@ -104,6 +114,7 @@ void RunReport::set_simulated(int frame, double time, const StepStatistics& step
                                {"centre_m", vector_json(body.centre)},
                                {"velocity_m_s", vector_json(body.velocity)},
                                {"angular_velocity_rad_s", vector_json(body.angular_velocity)}});
+  if (heat) entry["heat"] = heat_json(d.enthalpy, *heat);
   entry.update(cost_json(cost));
   document_->frame(frame)["simulate"] = entry;
   save();

@@ -64,9 +64,11 @@ class RunReport {
   ~RunReport();
 
   void set_run(const std::string& scene_text, std::uint64_t scene_hash, double spacing, double body_volume);
-  /// `mass` is absent in a scene without emitters and outflow, `bodies` empty in one without rigid bodies.
+  /// `mass` is absent in a scene without emitters and outflow, `bodies` empty in one without rigid bodies. `heat`: what passed since the frame
+  /// before; absent where no specific heat is known.
   void set_simulated(int frame, double time, const StepStatistics& steps, const Diagnostics<3>& diagnostics,
-                     const std::optional<MassAccount>& mass, const std::vector<BodyPose>& bodies, const StageCost& cost);
+                     const std::optional<MassAccount>& mass, const std::optional<HeatLedger>& heat, const std::vector<BodyPose>& bodies,
+                     const StageCost& cost);
   void set_surfaced(int frame, double volume, std::size_t n_vertices, std::size_t n_triangles, const StageCost& cost);
   void set_rendered(int frame, const StageCost& cost);
   void save();

@@ -161,6 +161,24 @@ struct OutflowSettings {
   std::optional<Vec3> upper;
 };
 
+/// What the free surface loses heat to.
+struct AmbientSettings {
+  std::optional<double> temperature;
+  double heat_transfer = 0.0;
+};
+
+/// What heats the free surface near it: of given power, or a gas of given temperature.
+struct HeatSourceSettings {
+  Vec3 position = Vec3::Zero();
+  double radius = 0.0;
+  std::optional<double> power;
+  std::optional<double> temperature;
+  std::optional<double> heat_transfer;
+  Vec3 velocity = Vec3::Zero();
+  double from = 0.0;
+  std::optional<double> until;
+};
+
 struct CameraSettings {
   std::optional<Vec3> eye;
   std::optional<Vec3> target;
@@ -215,6 +233,8 @@ struct Scene {
   std::vector<ColliderSettings> colliders;
   std::vector<EmitterSettings> emitters;
   std::vector<OutflowSettings> outflows;
+  std::optional<AmbientSettings> ambient;
+  std::vector<HeatSourceSettings> heat_sources;
   SurfacingOptions surface;
   CameraSettings camera;
   std::vector<LightSettings> lights;

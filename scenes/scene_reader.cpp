@@ -101,6 +101,32 @@ class SceneReader final : public SchemaVisitor {
     }
   }
 
+  void thermal(const Key& key, std::optional<ThermalRange>& value, const Limits& limits) override {
+    const auto* node = find(key);
+    if (!node) return;
+    value.emplace();
+    const auto* laws = node->as_table();
+    if (!laws) {
+      if (read_number(*node, path_of(key), value->cold, limits, " or a table such as { cold = , hot = }")) value->hot = value->cold;
+      return;
+    }
+    scopes_.push_back({laws, path_of(key), {}});
+    if (laws->contains("temperature_K") || laws->contains("values")) {
+      value->law = ThermalLaw::table;
+      numbers({"temperature_K", "rising temperatures"}, value->temperature, non_negative);
+      numbers({"values", "one for each temperature"}, value->value, limits);
+    } else if (laws->contains("reference") || laws->contains("reference_K") || laws->contains("rate_1_K")) {
+      value->law = ThermalLaw::exponential;
+      required_number({"reference", "the value at reference_K"}, value->reference, limits);
+      required_number({"reference_K", "where the value is `reference`"}, value->reference_temperature, non_negative);
+      required_number({"rate_1_K", "how fast it falls with temperature"}, value->rate, any_number);
+    } else {
+      required_number({"cold", ""}, value->cold, limits);
+      required_number({"hot", ""}, value->hot, limits);
+    }
+    close_scope();
+  }
+
   void table(const Key& key, bool* presence, const std::function<void()>& visit_keys) override {
     const auto* node = find(key);
     if (presence) *presence = node != nullptr;
@@ -173,6 +199,16 @@ class SceneReader final : public SchemaVisitor {
     const toml::node* node = find(key);
     if (!node) errors_.add(path_of(key), fmt::format("missing: {}", key.meaning.empty() ? "a value is needed here" : key.meaning));
     return node;
+  }
+
+  void numbers(const Key& key, std::vector<double>& values, const Limits& limits) {
+    const auto* node = require(key);
+    if (!node) return;
+    const auto* array = node->as_array();
+    if (!array) return wrong_type(*node, path_of(key), "an array of numbers");
+    values.resize(array->size());
+    for (std::size_t k = 0; k < values.size(); ++k)
+      if (!read_number(*array->get(k), fmt::format("{}[{}]", path_of(key), k), values[k], limits)) return;
   }
 
   void wrong_type(const toml::node& node, const std::string& path, std::string_view wanted) {

@@ -14,13 +14,6 @@ void visit_int(SchemaVisitor& v, const Key& key, int& value, const Limits& limit
   value = static_cast<int>(wide);
 }
 
-void visit_range(SchemaVisitor& v, const Key& key, std::optional<ThermalRange>& value, const Limits& limits) {
-  std::optional<std::pair<double, double>> pair;
-  if (value) pair = {value->cold, value->hot};
-  v.range(key, "cold", "hot", pair, limits);
-  if (pair) value = ThermalRange{pair->first, pair->second};
-}
-
 template <typename T>
 void visit_tables(SchemaVisitor& v, const Key& key, std::vector<T>& values, const std::function<void(T&)>& visit) {
   v.tables(
@@ -33,32 +26,44 @@ void visit_tables(SchemaVisitor& v, const Key& key, std::vector<T>& values, cons
 
 void visit_viscosity(SchemaVisitor& v, ViscositySettings& s) {
   v.choice({"law", "`smd`: Souza Mendes-Dutra viscoplastic; `newtonian`; `inviscid`"}, s.law, {"smd", "newtonian", "inviscid"});
-  visit_range(v, {"viscosity_Pa_s", "viscosity eta of a `newtonian` fluid", "required by `newtonian`, refused otherwise"}, s.viscosity,
-              positive);
-  visit_range(v, {"yield_stress_Pa", "`smd`: stress tau0 below which it hardly flows; 0 is a power-law fluid", "required by `smd`"},
-              s.yield_stress, non_negative);
-  visit_range(v, {"consistency_Pa_sn", "`smd`: consistency K", "required by `smd`"}, s.consistency, positive);
+  v.thermal({"viscosity_Pa_s", "viscosity eta of a `newtonian` fluid", "required by `newtonian`, refused otherwise"}, s.viscosity,
+            positive);
+  v.thermal({"yield_stress_Pa", "`smd`: stress tau0 below which it hardly flows; 0 is a power-law fluid", "required by `smd`"},
+            s.yield_stress, non_negative);
+  v.thermal({"consistency_Pa_sn", "`smd`: consistency K", "required by `smd`"}, s.consistency, positive);
   v.number({"index", "`smd`: flow index n; below 1 it thins as it shears", "required by `smd`"}, s.index, {0.0, 1.0, true});
-  visit_range(v,
-              {"jump_number",
-               "`smd`: J = eta0 gdot1/tau0 - 1 with gdot1 = (tau0/K)^(1/n): how much stiffer it is at rest than at the end of yielding",
-               "`smd` with a yield stress needs this or rest_viscosity_Pa_s, not both"},
-              s.jump_number, non_negative);
-  visit_range(v, {"rest_viscosity_Pa_s", "`smd`: viscosity eta0 at rest", "see jump_number"}, s.rest_viscosity, positive);
+  v.thermal({"jump_number",
+             "`smd`: J = eta0 gdot1/tau0 - 1 with gdot1 = (tau0/K)^(1/n): how much stiffer it is at rest than at the end of yielding",
+             "`smd` with a yield stress needs this or rest_viscosity_Pa_s, not both"},
+            s.jump_number, non_negative);
+  v.thermal({"rest_viscosity_Pa_s", "`smd`: viscosity eta0 at rest", "see jump_number"}, s.rest_viscosity, positive);
+}
+
+void visit_heat(SchemaVisitor& v, HeatProperties& s) {
+  v.required_number({"diffusivity_m2_s", "thermal diffusivity k = conductivity/(density specific heat)"}, s.diffusivity, non_negative);
+  v.required_number({"cold_K", "at and below, it is solid and the cold values hold"}, s.cold, non_negative);
+  v.required_number({"hot_K", "at and above, it is liquid and the hot values hold; above cold_K, or with latent heat the same: a sharp melting point"},
+                    s.hot, non_negative);
+  std::optional<double> specific_heat;
+  if (s.specific_heat > 0.0) specific_heat = s.specific_heat;
+  v.number({"specific_heat_J_kgK", "specific heat c_p", "not known, and then neither is any energy"}, specific_heat, positive);
+  s.specific_heat = specific_heat.value_or(0.0);
+  v.number({"latent_heat_J_kg", "latent heat L of melting, taken up evenly from cold_K to hot_K; needs the specific heat"}, s.latent_heat,
+           non_negative);
+  v.number({"emissivity", "of the free surface, which radiates to [ambient]; needs the specific heat"}, s.emissivity, unit_interval);
 }
 
 void visit_material(SchemaVisitor& v, MaterialSettings& s) {
   v.required_text({"name", "what bodies call it"}, s.name);
   v.required_number({"density_kg_m3", "density at rest"}, s.density, positive);
-  v.table({"viscosity", "the flow law. Where the material has `heat`, a value may be a range `{ cold = , hot = }`"}, nullptr,
-          [&] { visit_viscosity(v, s.viscosity); });
+  v.table({"viscosity",
+           "the flow law. Where the material has `heat`, a value may follow temperature: `{ cold = , hot = }` runs linearly from cold_K to hot_K; "
+           "`{ temperature_K = [ ], values = [ ] }` through points, geometrically between values above 0; `{ reference = , reference_K = , "
+           "rate_1_K = }` is reference exp(-rate (T - reference_K)), T kept from cold_K to hot_K"},
+          nullptr, [&] { visit_viscosity(v, s.viscosity); });
   bool has_heat = s.heat.has_value();
   HeatProperties heat = s.heat.value_or(HeatProperties{});
-  v.table({"heat", "conduction and melting; leave it out and nothing thermal exists"}, &has_heat, [&] {
-    v.required_number({"diffusivity_m2_s", "thermal diffusivity k"}, heat.diffusivity, non_negative);
-    v.required_number({"cold_K", "at and below, the cold values hold"}, heat.cold, non_negative);
-    v.required_number({"hot_K", "at and above, the hot values hold; above cold_K"}, heat.hot, non_negative);
-  });
+  v.table({"heat", "conduction and melting; leave it out and nothing thermal exists"}, &has_heat, [&] { visit_heat(v, heat); });
   if (has_heat) s.heat = heat;
 }
 
@@ -162,6 +167,29 @@ void visit_outflow(SchemaVisitor& v, OutflowSettings& s) {
   v.vector({"upper_m", "highest corner", "required"}, s.upper, any_number);
 }
 
+void visit_ambient(SchemaVisitor& v, std::optional<AmbientSettings>& ambient) {
+  bool present = ambient.has_value();
+  AmbientSettings s = ambient.value_or(AmbientSettings{});
+  v.table({"ambient", "what free surfaces lose heat to, by convection here and by radiation where a material has an emissivity"}, &present, [&] {
+    v.number({"temperature_K", "of the air and of what is radiated to", "required"}, s.temperature, non_negative);
+    v.number({"heat_transfer_W_m2K", "h of convection, h (T - temperature_K): still air about 5 to 10, wind up to 100"}, s.heat_transfer,
+             non_negative);
+  });
+  if (present) ambient = s;
+}
+
+void visit_heat_source(SchemaVisitor& v, HeatSourceSettings& s) {
+  v.vector({"position_m", "where it is at the start"}, s.position, any_number);
+  v.required_number({"radius_m", "R: heats free surfaces nearer than this, weighted with (1 - r^2/R^2)^2"}, s.radius, positive);
+  v.number({"power_W", "all of it goes into the free surface within the radius", "give this, or temperature_K and heat_transfer_W_m2K"}, s.power,
+           non_negative);
+  v.number({"temperature_K", "of a flame's gas", "see power_W"}, s.temperature, non_negative);
+  v.number({"heat_transfer_W_m2K", "h from that gas, at its middle: h (temperature_K - T)", "see power_W"}, s.heat_transfer, positive);
+  v.vector({"velocity_m_s", "it moves with"}, s.velocity, any_number);
+  v.number({"from_s", "it burns from this time on"}, s.from, non_negative);
+  v.number({"until_s", "until this time", "to the end"}, s.until, positive);
+}
+
 void visit_simulation(SchemaVisitor& v, Scene& s) {
   v.table({"particles", "how finely bodies are divided. Give `count` or `spacing_m`"}, nullptr, [&] {
     v.integer({"count", "particles in all bodies together, met to 1 %", "see spacing_m"}, s.particles.count, {1, 2e9});
@@ -225,6 +253,9 @@ void visit_simulation(SchemaVisitor& v, Scene& s) {
   visit_tables<EmitterSettings>(v, {"emitter", "a vent that pours; none is allowed"}, s.emitters, [&](EmitterSettings& e) { visit_emitter(v, e); });
   visit_tables<OutflowSettings>(v, {"outflow", "a box that takes particles out of the shot; none is allowed"}, s.outflows,
                                 [&](OutflowSettings& o) { visit_outflow(v, o); });
+  visit_ambient(v, s.ambient);
+  visit_tables<HeatSourceSettings>(v, {"heat_source", "a flame or a lamp that heats free surfaces near it; none is allowed"}, s.heat_sources,
+                                   [&](HeatSourceSettings& h) { visit_heat_source(v, h); });
 }
 
 // --------------------------------------------------------------------------------------------------------- surface, render

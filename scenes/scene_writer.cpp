@@ -34,6 +34,23 @@ std::string range_text(std::string_view first, std::string_view second, const st
   return fmt::format("{{ {} = {}, {} = {} }}", first, number_text(value.first), second, number_text(value.second));
 }
 
+std::string list_text(const std::vector<double>& values) {
+  std::string text;
+  for (const double value : values) text += (text.empty() ? "" : ", ") + number_text(value);
+  return "[" + text + "]";
+}
+
+std::string thermal_text(const ThermalRange& s) {
+  switch (s.law) {
+    case ThermalLaw::range: return range_text("cold", "hot", {s.cold, s.hot});
+    case ThermalLaw::table: return fmt::format("{{ temperature_K = {}, values = {} }}", list_text(s.temperature), list_text(s.value));
+    case ThermalLaw::exponential:
+      return fmt::format("{{ reference = {}, reference_K = {}, rate_1_K = {} }}", number_text(s.reference),
+                         number_text(s.reference_temperature), number_text(s.rate));
+  }
+  throw InternalError("thermal_text: unknown law");
+}
+
 /// Writes TOML. The schema visits a table's own keys before its sub-tables, as TOML wants.
 class TomlWriter final : public SchemaVisitor {
  public:
@@ -59,6 +76,9 @@ class TomlWriter final : public SchemaVisitor {
   void range(const Key& key, std::string_view first, std::string_view second, std::optional<std::pair<double, double>>& value,
              const Limits&) override {
     if (value) line(key, range_text(first, second, *value));
+  }
+  void thermal(const Key& key, std::optional<ThermalRange>& value, const Limits&) override {
+    if (value) line(key, thermal_text(*value));
   }
   void table(const Key& key, bool* presence, const std::function<void()>& visit_keys) override {
     if (!presence || *presence) open(key, "[", "]", visit_keys);
@@ -129,6 +149,9 @@ class ReferenceWriter final : public SchemaVisitor {
   void range(const Key& key, std::string_view first, std::string_view second, std::optional<std::pair<double, double>>&,
              const Limits& limits) override {
     row(key, fmt::format("{}, or `{{ {} = , {} = }}`", limits_text(limits), first, second), "");
+  }
+  void thermal(const Key& key, std::optional<ThermalRange>&, const Limits& limits) override {
+    row(key, limits_text(limits) + ", or by temperature", "");
   }
   void table(const Key& key, bool* presence, const std::function<void()>& visit_keys) override {
     section(key, "[", "]", presence ? " *Optional.*" : "", visit_keys);

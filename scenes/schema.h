@@ -52,6 +52,9 @@ class SchemaVisitor {
   /// A number, or { first = , second = } for the two ends of a range.
   virtual void range(const Key& key, std::string_view first, std::string_view second, std::optional<std::pair<double, double>>& value,
                      const Limits& limits) = 0;
+  /// A number that may follow temperature: a number, { cold = , hot = }, { temperature_K = [], values = [] } or
+  /// { reference = , reference_K = , rate_1_K = }. `limits` are those of the value.
+  virtual void thermal(const Key& key, std::optional<ThermalRange>& value, const Limits& limits) = 0;
   /// A table; where `presence` is given the table may be left out, and *presence says whether it is there.
   virtual void table(const Key& key, bool* presence, const std::function<void()>& visit_keys) = 0;
   /// [[name]]: `resize` makes n entries, `visit_entry(k)` visits one of `size()`.

@@ -122,6 +122,12 @@ void store_frame(const Solver<3, Real>& solver, const SimulationSetup& setup, co
 }
 
 template <typename Real>
+std::optional<HeatLedger> ledger_of(const Solver<3, Real>& solver) {
+  if (!solver.knows_enthalpy()) return std::nullopt;
+  return solver.heat_ledger();
+}
+
+template <typename Real>
 void run_simulation(const Scene& scene, const OutputFolder& folder, const StageOptions& options, SimulationSetup& setup,
                     const std::optional<Checkpoint>& checkpoint, std::uint64_t scene_hash, RunReport& report, Progress& progress) {
   Colliders<3> colliders = build_colliders(setup);
@@ -138,7 +144,7 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
     const CostMeter meter;
     store_frame(solver, setup, folder, scene_hash, 1, 0.0);
     const Diagnostics<3> diagnostics = compute_diagnostics(solver);
-    report.set_simulated(1, 0.0, {}, diagnostics, compute_mass_account(solver, diagnostics.mass), to_body_poses(solver.colliders()),
+    report.set_simulated(1, 0.0, {}, diagnostics, compute_mass_account(solver, diagnostics.mass), ledger_of(solver), to_body_poses(solver.colliders()),
                          meter.finish({folder.particles(1)}));
   }
 
@@ -156,7 +162,7 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
     const double time = (frame - 1) / scene.shot.fps;
     store_frame(solver, setup, folder, scene_hash, frame, time);
     const Diagnostics<3> diagnostics = compute_diagnostics(solver);
-    report.set_simulated(frame, time, statistics, diagnostics, compute_mass_account(solver, diagnostics.mass),
+    report.set_simulated(frame, time, statistics, diagnostics, compute_mass_account(solver, diagnostics.mass), ledger_of(solver),
                          to_body_poses(solver.colliders()),
                          meter.finish({folder.particles(frame), folder.checkpoint(frame)}));
   }

@@ -1,6 +1,7 @@
 #include "scenes/validate_scene.h"
 
 #include "core/error.h"
+#include "core/sph/rheology.h"
 #include "io/height_field.h"
 #include "scenes/nearest_word.h"
 #include "scenes/scene_reader.h"
@@ -45,7 +46,7 @@ void validate_viscosity(const ViscositySettings& s, const std::string& path, Sce
     require(s.index.has_value(), "index");
     if (s.jump_number && s.rest_viscosity)
       errors.add(path + ".rest_viscosity_Pa_s", "give jump_number or rest_viscosity_Pa_s, not both: one follows from the other");
-    const bool yields = s.yield_stress && (s.yield_stress->cold > 0.0 || s.yield_stress->hot > 0.0);
+    const bool yields = s.yield_stress && !is_zero(*s.yield_stress);
     if (yields && !s.jump_number && !s.rest_viscosity)
       errors.add(path + ".jump_number", "missing: a yield stress needs jump_number or rest_viscosity_Pa_s");
     return;
@@ -61,19 +62,45 @@ void validate_viscosity(const ViscositySettings& s, const std::string& path, Sce
   refuse(s.rest_viscosity.has_value(), "rest_viscosity_Pa_s");
 }
 
-void validate_material(const MaterialSettings& m, const std::string& path, SceneErrors& errors) {
+void validate_heat(const HeatProperties& s, bool has_ambient, const std::string& path, SceneErrors& errors) {
+  if (s.hot < s.cold || (s.hot == s.cold && !(s.latent_heat > 0.0)))
+    errors.add(path + ".hot_K", fmt::format("must be above cold_K = {}, is {}; only with latent_heat_J_kg may they be equal", s.cold, s.hot));
+  if (s.latent_heat > 0.0 && !(s.specific_heat > 0.0))
+    errors.add(path + ".latent_heat_J_kg", "needs specific_heat_J_kgK beside it");
+  if (s.emissivity > 0.0 && !(s.specific_heat > 0.0)) errors.add(path + ".emissivity", "needs specific_heat_J_kgK beside it");
+  if (s.emissivity > 0.0 && !has_ambient)
+    errors.add(path + ".emissivity", "needs an [ambient] with the temperature_K that is radiated to");
+}
+
+void validate_thermal_table(const ThermalRange& s, const std::string& path, SceneErrors& errors) {
+  if (s.temperature.size() != s.value.size())
+    errors.add(path + ".values", fmt::format("must be as many as temperature_K, which has {}, are {}", s.temperature.size(), s.value.size()));
+  if (s.temperature.size() < 2)
+    errors.add(path + ".temperature_K", fmt::format("must hold at least two temperatures, holds {}", s.temperature.size()));
+  for (std::size_t k = 1; k < s.temperature.size(); ++k)
+    if (!(s.temperature[k] > s.temperature[k - 1]))
+      return errors.add(path + ".temperature_K", fmt::format("must rise from one to the next, but {} is followed by {}", s.temperature[k - 1],
+                                                             s.temperature[k]));
+}
+
+void validate_thermal(const std::optional<ThermalRange>& value, const std::optional<HeatProperties>& heat, const std::string& path,
+                      SceneErrors& errors) {
+  if (!value || (value->law == ThermalLaw::range && value->cold == value->hot)) return;
+  if (!heat) return errors.add(path, "follows temperature, but the material has no heat");
+  if (value->law == ThermalLaw::table) validate_thermal_table(*value, path, errors);
+  if (value->law == ThermalLaw::exponential && !(heat->hot > heat->cold))
+    errors.add(path, fmt::format("an exponential holds from heat.cold_K to heat.hot_K, which are both {}", heat->cold));
+}
+
+void validate_material(const MaterialSettings& m, bool has_ambient, const std::string& path, SceneErrors& errors) {
   validate_viscosity(m.viscosity, path + ".viscosity", errors);
-  if (m.heat && !(m.heat->hot > m.heat->cold))
-    errors.add(path + ".heat.hot_K", fmt::format("must be above cold_K = {}, is {}", m.heat->cold, m.heat->hot));
-  const auto check_range = [&](const std::optional<ThermalRange>& range, const char* key) {
-    if (range && range->cold != range->hot && !m.heat)
-      errors.add(fmt::format("{}.viscosity.{}", path, key), "runs from cold to hot, but the material has no heat");
-  };
-  check_range(m.viscosity.viscosity, "viscosity_Pa_s");
-  check_range(m.viscosity.yield_stress, "yield_stress_Pa");
-  check_range(m.viscosity.consistency, "consistency_Pa_sn");
-  check_range(m.viscosity.jump_number, "jump_number");
-  check_range(m.viscosity.rest_viscosity, "rest_viscosity_Pa_s");
+  if (m.heat) validate_heat(*m.heat, has_ambient, path + ".heat", errors);
+  const std::string of = path + ".viscosity.";
+  validate_thermal(m.viscosity.viscosity, m.heat, of + "viscosity_Pa_s", errors);
+  validate_thermal(m.viscosity.yield_stress, m.heat, of + "yield_stress_Pa", errors);
+  validate_thermal(m.viscosity.consistency, m.heat, of + "consistency_Pa_sn", errors);
+  validate_thermal(m.viscosity.jump_number, m.heat, of + "jump_number", errors);
+  validate_thermal(m.viscosity.rest_viscosity, m.heat, of + "rest_viscosity_Pa_s", errors);
 }
 
 void validate_placement(const PlacementSettings& s, const std::string& path, SceneErrors& errors) {
@@ -192,6 +219,39 @@ void validate_collider(const ColliderSettings& s, bool hot, const std::string& p
   if (s.temperature && !s.wall) errors.add(path + ".temperature_K", "heat passes through walls only; set wall = true, or leave this out");
 }
 
+void validate_ambient(const Scene& scene, std::size_t n_hot, SceneErrors& errors) {
+  const AmbientSettings& s = *scene.ambient;
+  if (!s.temperature) errors.add("ambient.temperature_K", "missing: of the air and of what is radiated to");
+  if (n_hot == 0) return errors.add("ambient", "no material has heat; give it one, or leave this out");
+  const bool radiates = std::any_of(scene.materials.begin(), scene.materials.end(), [](const auto& m) { return m.heat && m.heat->emissivity > 0.0; });
+  if (s.heat_transfer == 0.0 && !radiates)
+    errors.add("ambient.heat_transfer_W_m2K", "is 0 and no material has an emissivity, so nothing is lost; give one of them, or leave [ambient] out");
+}
+
+void validate_heat_source(const HeatSourceSettings& s, std::size_t n_hot, const std::string& path, SceneErrors& errors) {
+  if (n_hot == 0) return errors.add(path, "no material has heat; give it one, or leave this out");
+  if (s.power && (s.temperature || s.heat_transfer))
+    errors.add(path + ".power_W", "give power_W, or temperature_K and heat_transfer_W_m2K, not both");
+  if (!s.power && !s.temperature) errors.add(path + ".power_W", "missing: give power_W, or temperature_K and heat_transfer_W_m2K");
+  if (!s.power && s.temperature && !s.heat_transfer)
+    errors.add(path + ".heat_transfer_W_m2K", "missing: how much passes from the gas of temperature_K");
+  if (s.until && !(*s.until > s.from)) errors.add(path + ".until_s", fmt::format("must be after from_s = {}, is {}", s.from, *s.until));
+}
+
+/// Energies want the specific heat of all materials.
+void validate_specific_heats(const Scene& scene, SceneErrors& errors) {
+  const auto known = [](const MaterialSettings& m) { return m.heat && m.heat->specific_heat > 0.0; };
+  const bool some = std::any_of(scene.materials.begin(), scene.materials.end(), known);
+  const bool exchange = scene.ambient || !scene.heat_sources.empty();
+  for (std::size_t k = 0; k < scene.materials.size(); ++k) {
+    const MaterialSettings& m = scene.materials[k];
+    if (!m.heat || known(m) || !(some || exchange)) continue;
+    errors.add(fmt::format("material.{}.heat.specific_heat_J_kgK", k),
+               fmt::format("missing: {}", some ? "another material has it, and heat passes between them"
+                                               : "[ambient] and [[heat_source]] exchange energy, which it turns into temperature"));
+  }
+}
+
 void validate_periodic(const PeriodicSettings& s, SceneErrors& errors) {
   if (!s.lower) errors.add("periodic.lower_m", "missing: lowest corner of the box that repeats");
   if (!s.upper) errors.add("periodic.upper_m", "missing: highest corner of the box that repeats");
@@ -218,7 +278,7 @@ void validate_scene(const Scene& scene, SceneErrors& errors) {
   std::size_t n_hot = 0;
   for (std::size_t k = 0; k < scene.materials.size(); ++k) {
     const std::string path = fmt::format("material.{}", k);
-    validate_material(scene.materials[k], path, errors);
+    validate_material(scene.materials[k], scene.ambient.has_value(), path, errors);
     if (!names.insert(scene.materials[k].name).second && !scene.materials[k].name.empty())
       errors.add(path + ".name", fmt::format("another material is called \"{}\" too", scene.materials[k].name));
     if (scene.materials[k].heat) ++n_hot;
@@ -237,6 +297,10 @@ void validate_scene(const Scene& scene, SceneErrors& errors) {
   for (std::size_t k = 0; k < scene.emitters.size(); ++k) validate_emitter(scene, scene.emitters[k], fmt::format("emitter.{}", k), errors);
   if (scene.emitters.size() > 255) errors.add("emitter", fmt::format("up to 255 are possible, there are {}", scene.emitters.size()));
   for (std::size_t k = 0; k < scene.outflows.size(); ++k) validate_outflow(scene.outflows[k], fmt::format("outflow.{}", k), errors);
+  validate_specific_heats(scene, errors);
+  if (scene.ambient) validate_ambient(scene, n_hot, errors);
+  for (std::size_t k = 0; k < scene.heat_sources.size(); ++k)
+    validate_heat_source(scene.heat_sources[k], n_hot, fmt::format("heat_source.{}", k), errors);
   if (scene.domain.lower && scene.domain.upper && !((*scene.domain.upper - *scene.domain.lower).array() > 0.0).all())
     errors.add("domain.upper_m", "must be above lower_m along every axis");
   if (scene.periodic) validate_periodic(*scene.periodic, errors);

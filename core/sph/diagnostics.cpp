@@ -29,6 +29,7 @@ Diagnostics<Dim> compute_diagnostics(const Solver<Dim, Real>& solver) {
         one.max_density_error = density_error;
         one.max_speed = p.velocity[i].norm();
         if (thermal) one.min_temperature = one.max_temperature = p.temperature[i];
+        if (solver.knows_enthalpy()) one.enthalpy = m * solver.enthalpy(i);
         return one;
       },
       [](Diagnostics<Dim> a, const Diagnostics<Dim>& b) {
@@ -42,6 +43,7 @@ Diagnostics<Dim> compute_diagnostics(const Solver<Dim, Real>& solver) {
         a.max_speed = std::max(a.max_speed, b.max_speed);
         a.min_temperature = std::min(a.min_temperature, b.min_temperature);
         a.max_temperature = std::max(a.max_temperature, b.max_temperature);
+        a.enthalpy += b.enthalpy;
         return a;
       });
   d.mean_density_error /= static_cast<double>(std::max<std::size_t>(1, p.size()));

@@ -17,6 +17,7 @@ struct Diagnostics {
   double max_speed = 0.0;                    ///< [m/s]
   double min_temperature = 0.0;              ///< [K]; 0 in a scene without heat
   double max_temperature = 0.0;
+  double enthalpy = 0.0;                     ///< from the solid at cold_K on [J]; 0 where no specific heat is known
 };
 
 /// Sums run in an order that depends on the number of particles only.

@@ -1,17 +1,31 @@
 #pragma once
 // What a fluid is made of: density, flow curve and heat, each with its dependence on temperature.
 
+#include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace smelt {
 
-/// A property that runs linearly from its cold to its hot value over the melting range  [P 6-3].
+/// How a property follows temperature.
+enum class ThermalLaw : std::uint8_t {
+  range,       ///< linearly in the melted fraction u from `cold` to `hot`  [P 6-3]
+  table,       ///< through points; between two of them geometrically, linearly where one of them is 0; constant beyond the ends
+  exponential  ///< reference exp(-rate (T - reference_K)), as lava codes have it [Costa & Macedonio 2005], T kept between coldest and hottest
+};
+
+/// A property that may follow temperature.
 struct ThermalRange {
   double cold = 0.0;
   double hot = 0.0;
-  /// `u` in [0, 1]: 0 at and below cold_K, 1 at and above hot_K.
-  double at(double u) const { return (1.0 - u) * cold + u * hot; }
+  ThermalLaw law = ThermalLaw::range;
+  std::vector<double> temperature = {};  ///< of a table, rising [K]
+  std::vector<double> value = {};        ///< of a table, one a temperature
+  double reference = 0.0;                ///< of an exponential: the value at reference_temperature
+  double reference_temperature = 0.0;    ///< [K]
+  double rate = 0.0;                     ///< a [1/K]; above 0 the value falls as it gets hotter
+  double coldest = 0.0, hottest = 0.0;   ///< [K], bounds of an exponential's T
 };
 
 /// Souza Mendes-Dutra viscoplastic law  [P 6-1, de Souza Mendes & Dutra 2004]:
@@ -26,11 +40,15 @@ struct Rheology {
   std::optional<ThermalRange> rest_viscosity;  ///< eta0 [Pa s]
 };
 
-/// Conduction and the melting range. `cold` and `hot` bound the range over which the rheology changes.
+/// Conduction, melting and what the surface gives off. `cold` and `hot`, solidus and liquidus, bound the range over which the rheology
+/// changes and latent heat is taken up, evenly.
 struct HeatProperties {
-  double diffusivity = 0.0;  ///< k [m^2/s]
-  double cold = 0.0;         ///< [K]
-  double hot = 0.0;          ///< [K], > cold
+  double diffusivity = 0.0;    ///< k = conductivity/(rho0 c_p) [m^2/s]
+  double cold = 0.0;           ///< [K]
+  double hot = 0.0;            ///< [K], > cold; with latent heat also = cold, a sharp melting point
+  double specific_heat = 0.0;  ///< c_p [J/(kg K)]; 0: not known, and then neither is any energy
+  double latent_heat = 0.0;    ///< L [J/kg]
+  double emissivity = 0.0;     ///< of the free surface, 0 to 1
 };
 
 struct Material {
@@ -39,5 +57,11 @@ struct Material {
   Rheology rheology;
   std::optional<HeatProperties> heat;  ///< absent: nothing thermal exists
 };
+
+/// rho0 c_p k [W/(m K)] of a material with heat; over c_p where that is not known [kg/(m s)].
+inline double conductivity(const Material& material) {
+  const HeatProperties& heat = *material.heat;
+  return material.density * heat.diffusivity * (heat.specific_heat > 0.0 ? heat.specific_heat : 1.0);
+}
 
 }  // namespace smelt

@@ -49,6 +49,7 @@ struct Particles {
   std::vector<Vec<Dim>> velocity;          ///< [m/s]
   std::vector<double> density;             ///< [kg/m^3]
   std::vector<double> temperature;         ///< [K], or empty
+  std::vector<double> enthalpy;            ///< specific, from the solid at cold_K on [J/kg]; empty without latent heat
   std::vector<Symmetric<Dim>> stress;      ///< extra stress S [Pa], or empty in an inviscid scene
   std::vector<float> viscosity;            ///< eta = |S| / gdot at the last step [Pa s], or empty in an inviscid scene
   std::vector<double> internal_energy;     ///< of an ideal gas, specific, e [J/kg]; else empty
@@ -66,6 +67,7 @@ void for_each_array(Set& particles, const Visit& visit) {
   visit(particles.velocity);
   visit(particles.density);
   visit(particles.temperature);
+  visit(particles.enthalpy);
   visit(particles.stress);
   visit(particles.viscosity);
   visit(particles.internal_energy);

@@ -3,6 +3,8 @@
 
 #include "core/sph/material.h"
 
+#include <limits>
+
 namespace smelt {
 
 /// The SMD law at one temperature.
@@ -16,8 +18,14 @@ struct FlowCurve {
 /// u of [P 6-3], clamped to [0, 1]: outside its range the text's line would extrapolate to a negative J.
 double melted_fraction(const HeatProperties& heat, double temperature);
 
-/// The law's parameters at melted fraction `u`; eta0 from J where J is given.
-FlowCurve flow_curve_at(const Rheology& rheology, double u);
+/// A property at melted fraction `u` and `temperature` [K]; each law reads the one that it follows.
+double value_at(const ThermalRange& property, double u, double temperature);
+
+/// Whether a property is 0 at every temperature.
+bool is_zero(const ThermalRange& property);
+
+/// The law's parameters at melted fraction `u` and `temperature` [K], which only tables and exponentials need; eta0 from J where J is given.
+FlowCurve flow_curve_at(const Rheology& rheology, double u, double temperature = std::numeric_limits<double>::quiet_NaN());
 
 /// tau(gdot) = eta(gdot) gdot [Pa] for gdot >= 0 [1/s].
 double shear_stress(const FlowCurve& curve, double shear_rate);

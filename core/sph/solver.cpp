@@ -26,7 +26,7 @@ void reorder(std::vector<T>& values, const std::vector<std::int32_t>& order) {
 }
 
 bool inviscid(const Rheology& r) {
-  return r.yield_stress.cold == 0.0 && r.yield_stress.hot == 0.0 && r.consistency.cold == 0.0 && r.consistency.hot == 0.0;
+  return is_zero(r.yield_stress) && is_zero(r.consistency);
 }
 
 /// Radius of the sphere (disc, segment) of a particle's volume  [P 5-11].
@@ -67,6 +67,7 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
   if (terms_.diffusion && parameters_.density != DensityForm::continuity)
     fail("simulation: density diffusion goes with the continuity equation; a density that is a sum has nothing to diffuse (set it to 0)");
   CHECK_EQ(particles_.temperature.size(), terms_.pair.heat ? n : 0);
+  set_up_heat();
   if (terms_.pair.stress) {
     particles_.stress.resize(n, Symmetric<Dim>::Zero());
     particles_.viscosity.resize(n, 0.0F);
@@ -118,6 +119,8 @@ void Solver<Dim, Real>::prepare(double time) {
     find_walls();
     walls_->update(colliders_, particles_.position);
   }
+  if (terms_.exchange) find_free_surface();
+  heat_ledger_ = {};
   pack_motion(particles_.velocity);
   sum_densities();
   evaluate_rates();
@@ -144,17 +147,20 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
   if (colliders_.end_step()) travelled_ = travelled_at_walls_ = std::numeric_limits<double>::infinity();  // the lists name an obstacle that is not there
   if (colliders_.has_bodies()) strike_bodies();
 
-  if (2.0 * travelled_ > parameters_.skin * parameters_.smoothing_length) search_neighbours();
+  const bool searched = 2.0 * travelled_ > parameters_.skin * parameters_.smoothing_length;
+  if (searched) search_neighbours();
   if (walls_) {
     // Lists of walls last longer than those of neighbours, whatever order the particles are in.
     if (travelled_at_walls_ > wall_slack()) find_walls();
     walls_->update(colliders_, particles_.position);
   }
+  if (searched && terms_.exchange) find_free_surface();
 
   // Density, heat and stress change with the velocity that moved the particles.
   pack_motion(terms_.pair.xsph ? transport_ : particles_.velocity);
   sum_densities();
   evaluate_rates();
+  if (terms_.pair.heat) integrate_heat(dt, time + dt);
   integrate_rates(dt);
   evaluate_forces();
   kick(0.5 * dt);
@@ -291,9 +297,6 @@ void Solver<Dim, Real>::integrate_rates(double dt) {
   match_driven_densities();
   parallel_for_each(particles_.size(), [&](std::size_t i) {
     const RateSums<Dim, Real>& rate = rates_[i];
-    const Material& m = material(i);
-    // rho c_p dT/dt = div(c_p rho0 k grad T), one c_p: the factor rho0/rho makes the exchange symmetric, so that sum m T is kept.
-    if (m.heat && !is_driven(i)) particles_.temperature[i] += dt * m.heat->diffusivity * m.density / particles_.density[i] * rate.heat;
     if (terms_.pair.heat) heat_balance_[i] = balance_heat<Dim, Real>(rate);
     Mat<Dim> corrected_stress = Mat<Dim>::Zero();
     if (terms_.pair.stress) corrected_stress = integrate_stress(i, dt);
@@ -321,8 +324,8 @@ Mat<Dim> Solver<Dim, Real>::integrate_stress(std::size_t i, double dt) {
   const Mat<Dim> gradient = bare_gradient * correction;
   if ((!terms_.relaxed || dt > 0.0) && !is_driven(i)) {
     const Material& m = material(i);
-    const double u = m.heat ? melted_fraction(*m.heat, particles_.temperature[i]) : 0.0;
-    const FlowCurve curve = flow_curve_at(m.rheology, u);
+    const FlowCurve curve =
+        m.heat ? flow_curve_at(m.rheology, melted_fraction_of(i), particles_.temperature[i]) : flow_curve_at(m.rheology, 0.0);
     const double modulus = m.density * parameters_.shear_wave_speed * parameters_.shear_wave_speed;
     const StressState<Dim> before{particles_.stress[i], particles_.viscosity[i]};
     const StressState<Dim> after = terms_.relaxed ? relaxed_stress<Dim>(curve, modulus, dt, gradient, before)

@@ -4,6 +4,7 @@
 #include "core/sph/collision.h"
 #include "core/sph/equation_of_state.h"
 #include "core/sph/heat_balance.h"
+#include "core/sph/heat_exchange.h"
 #include "core/sph/material.h"
 #include "core/sph/open_boundary.h"
 #include "core/sph/pair_sums.h"
@@ -46,6 +47,8 @@ struct SolverParameters {
   /// Repeats along each axis whose upper end is above its lower one [m]; empty: none. A particle that leaves through a face comes in
   /// through the opposite one at the next neighbour search. Obstacles do not repeat: they reach beyond the faces they cross.
   Box<Dim> period;
+  std::optional<Ambient> ambient;   ///< what the free surface loses heat to; absent: nothing
+  std::vector<HeatSource<Dim>> heat_sources;  ///< what heats the free surface
   Box<Dim> domain;                  ///< a particle that leaves it has escaped: an error; empty box: no such check
   double skin = 0.08;               ///< reach of the neighbour lists beyond the support, in smoothing lengths
   std::vector<Emitter<Dim>> emitters;  ///< with the continuity equation alone, up to 255
@@ -59,6 +62,9 @@ struct SolverTerms {
   bool periodic = false;  ///< some axis repeats
   bool gas = false;       ///< an ideal gas: particles carry internal energy
   bool diffusion = false;  ///< density diffusion
+  bool latent_heat = false;  ///< some material takes it up: particles carry their enthalpy
+  bool exchange = false;     ///< heat passes through the free surface
+  bool ledger = false;       ///< specific heats are known, and so energies
 };
 
 /// A particle that hit a rigid body.
@@ -75,8 +81,9 @@ class Solver {
  public:
   /// Throws Error where the parameters cannot be (non-positive lengths or densities, a periodic box too short; an ideal gas that is
   /// viscous, conducts heat, meets walls or has an adiabatic index of 1 or less; density diffusion of a gas or of a summed density; no
-  /// particles and no emitter). The particles of an ideal gas bring their internal energy. `account` belongs to particles of a stored
-  /// state, and is empty at the start.
+  /// particles and no emitter; latent heat, emissivity, an ambient or sources without specific heat). The particles of an ideal gas bring
+  /// their internal energy, those of materials with latent heat their temperature, and their enthalpy where the temperature does not
+  /// say it. `account` belongs to particles of a stored state, and is empty at the start.
   Solver(const SolverParameters<Dim>& parameters, std::vector<Material> materials, Colliders<Dim> colliders,
          Particles<Dim> particles, ParticleAccount account = {});
 
@@ -94,6 +101,16 @@ class Solver {
   const Material& material(std::size_t i) const {
     return materials_[particles_.material.empty() ? 0 : particles_.material[i]];
   }
+
+  /// Of particle `i`, 0 solid to 1 liquid; of a material with heat.
+  double melted_fraction_of(std::size_t i) const;
+  /// Specific enthalpy [J/kg] from the solid at cold_K on; of a material whose specific heat is known.
+  double enthalpy(std::size_t i) const;
+  /// What passed since the last prepare(); all zero where no specific heat is known.
+  const HeatLedger& heat_ledger() const { return heat_ledger_; }
+  bool knows_enthalpy() const { return terms_.ledger; }
+  /// Free surface that each particle stood for at the last neighbour search [m^(Dim - 1)]; empty where no heat passes through it.
+  const std::vector<double>& free_surface_area() const { return free_surface_area_; }
 
   /// Sorts, searches and evaluates the forces anew from the state alone. Called at the start of every frame, so that a run resumed
   /// from a stored state goes on in the same bytes as one that never stopped. `time` [s] tells where moving obstacles are.
@@ -126,6 +143,12 @@ class Solver {
   void sum_body_loads();
   Real* force_record(std::size_t i) { return fields_.force.data() + i * PairFields<Dim, Real>::force_stride(terms_.pair); }
   double pressure(std::size_t i) const;
+  void set_up_heat();
+  void find_free_surface();
+  void integrate_heat(double dt, double time);
+  HeatLedger advance_heat(std::size_t i, double dt, double time);
+  double exchange_heat(std::size_t i, double dt, double time, double target, HeatLedger& passed) const;
+  SurfaceExchange surface_exchange(std::size_t i, double time) const;
   void integrate_rates(double dt);
   Mat<Dim> integrate_stress(std::size_t i, double dt);
   void pack_forces(std::size_t i, const Mat<Dim>& corrected_stress);
@@ -173,6 +196,9 @@ class Solver {
   std::vector<Vec<Dim>> pressure_gradient_;                     ///< [Pa/m]
   std::vector<Real> packed_gradient_;                           ///< the same for the pair loops
   std::vector<Real> diffusion_sums_;
+  std::vector<double> free_surface_area_;
+  std::vector<double> power_density_;  ///< of each heat source of given power at weight 1, at this step [W/m^(Dim - 1)]
+  HeatLedger heat_ledger_;
   std::vector<RateSums<Dim, Real>> rates_;
   std::vector<HeatBalance<Dim>> heat_balance_;  ///< empty without heat
   std::vector<std::array<Real, Dim>> force_sums_;

@@ -1,6 +1,7 @@
 // Particles that come in and go out between steps (core/sph/open_boundary.h).
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/sph/enthalpy.h"
 #include "core/sph/kernel.h"
 #include "core/sph/rheology.h"
 #include "core/sph/solver.h"
@@ -141,10 +142,14 @@ bool Solver<Dim, Real>::pour_in(double time) {
       particles_.density.push_back(m.density);
       particles_.driven.push_back(static_cast<std::uint8_t>(e + 1));
       if (terms_.pair.heat) particles_.temperature.push_back(emitter.temperature);
+      if (terms_.latent_heat) particles_.enthalpy.push_back(enthalpy_at(*m.heat, emitter.temperature));
       if (!terms_.pair.stress) continue;
-      const double u = m.heat ? melted_fraction(*m.heat, emitter.temperature) : 0.0;
+      const double u = !m.heat ? 0.0
+                       : m.heat->latent_heat > 0.0
+                           ? melted_fraction_at_enthalpy(*m.heat, enthalpy_at(*m.heat, emitter.temperature))
+                           : melted_fraction(*m.heat, emitter.temperature);
       particles_.stress.push_back(Symmetric<Dim>::Zero());
-      particles_.viscosity.push_back(static_cast<float>(viscosity(flow_curve_at(m.rheology, u), 0.0)));
+      particles_.viscosity.push_back(static_cast<float>(viscosity(flow_curve_at(m.rheology, u, emitter.temperature), 0.0)));
     }
   }
   return particles_.size() != before;

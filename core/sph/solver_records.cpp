@@ -13,9 +13,8 @@ void Solver<Dim, Real>::pack_heat(std::size_t i, double largest_conductivity, Re
   // Relative to the melting range, where single precision is needed most.
   record[0] =
       static_cast<Real>(particles_.temperature[i] - (materials_.front().heat ? materials_.front().heat->cold : 0.0));
-  const double conductivity = m.heat ? m.density * m.heat->diffusivity : 0.0;
   record[Fields::conductivity_at] =
-      static_cast<Real>(largest_conductivity > 0.0 ? conductivity / largest_conductivity : 0.0);
+      static_cast<Real>(largest_conductivity > 0.0 && m.heat ? conductivity(m) / largest_conductivity : 0.0);
   record[Fields::moment_trace_at] = static_cast<Real>(heat_balance_[i].moment_trace);
   for (int a = 0; a < Dim; ++a) record[Fields::balance_at + a] = static_cast<Real>(heat_balance_[i].lambda[a]);
 }
@@ -31,7 +30,7 @@ void Solver<Dim, Real>::pack_motion(const std::vector<Vec<Dim>>& velocity) {
   if (with_pressure) fields_.pressure.resize(n_records);
   double largest_conductivity = 0.0;
   for (const Material& m : materials_)
-    if (m.heat) largest_conductivity = std::max(largest_conductivity, m.density * m.heat->diffusivity);
+    if (m.heat) largest_conductivity = std::max(largest_conductivity, conductivity(m));
   parallel_for_each(n, [&](std::size_t i) {
     Real* record = fields_.motion.data() + i * Fields::motion_stride;
     const Vec<Dim> x = particles_.position[i] - origin_;

@@ -16,19 +16,29 @@ Vec<Dim> held_by_wall(const Vec<Dim>& vector, const Vec<Dim>& normal, const Cont
   return (1.0 - slip) * vector + slip * vector.dot(normal) * normal;
 }
 
+/// - 2 sum (T - T_wall) A/d over the contacts with walls of given temperature (T_w - T = (T - T_wall) (n.y)/d in the solid) [K/m^2].
+template <int Dim>
+double wall_heat(const WallNeighbour<Dim>& wall, const Colliders<Dim>& colliders, double temperature) {
+  double heat = 0.0;
+  for (const WallContact<Dim>& contact : wall.contacts)
+    if (const auto& of_wall = colliders.placed()[contact.obstacle].obstacle.temperature)
+      heat -= 2.0 * (temperature - *of_wall) * contact.conductance;
+  return heat;
+}
+
 /// Adds to the rate sums of a particle with velocity `v`, density `rho` and temperature `T`, P standing for held_by_wall:
 ///   density_rate     - rho sum push (v - u).n                     (the velocity across is mirrored)
 ///   velocity_moment  + sum stretch P (v - u) (x) n                (v_w - v = P (v - u) (n.y)/d in the solid, and
 ///                    + sum (1 - slip) Omega (Gamma I - first (x) n)      (1 - slip) Omega y: what turns with the wall is not sheared)
 ///   position_moment  + int y (x) grad_w dV
-///   heat             - 2 sum (T - T_wall) A/d / theta             (T_w - T = (T - T_wall) (n.y)/d), where the wall has a temperature,
+///   heat             + wall_heat / theta,
 ///   moment_trace     + tr int y (x) grad_w dV / Dim, and
-///   heat_imbalance   - sum A n, of such walls alone: at others support is missing,
+///   heat_imbalance   - sum A n, of walls with a temperature alone: at others support is missing,
 /// with theta [-] the particle's moment trace of the pass before.
 template <int Dim, typename Real>
 void accumulate_wall_rates(const WallNeighbour<Dim>& wall, const Colliders<Dim>& colliders, const PairTerms& terms,
                            const Vec<Dim>& v, double rho, double temperature, double theta, RateSums<Dim, Real>& sums) {
-  double density_rate = 0.0, heat = 0.0, solid = 0.0, conducting = 0.0;
+  double density_rate = 0.0, solid = 0.0, conducting = 0.0;
   Mat<Dim> velocity_moment = Mat<Dim>::Zero();
   for (const WallContact<Dim>& contact : wall.contacts) {
     const PlacedObstacle<Dim>& placed = colliders.placed()[contact.obstacle];
@@ -42,12 +52,11 @@ void accumulate_wall_rates(const WallNeighbour<Dim>& wall, const Colliders<Dim>&
     }
     solid += contact.solid;
     if (!terms.heat || !obstacle.temperature) continue;
-    heat -= 2.0 * (temperature - *obstacle.temperature) * contact.conductance / theta;
     conducting += contact.solid;
     for (int a = 0; a < Dim; ++a) sums.heat_imbalance[a] -= static_cast<Real>(contact.area * contact.normal[a]);
   }
   sums.density_rate += static_cast<Real>(density_rate);
-  if (terms.heat) sums.heat += static_cast<Real>(heat);
+  if (terms.heat) sums.heat += static_cast<Real>(wall_heat<Dim>(wall, colliders, temperature) / theta);
   if (conducting > 0.0) sums.moment_trace += static_cast<Real>(conducting / solid * wall.moment.trace() / Dim);
   if (terms.stress)
     for (int a = 0; a < Dim; ++a)

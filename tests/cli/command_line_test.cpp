@@ -94,7 +94,7 @@ courant = 0.4
 name = "wax"
 density_kg_m3 = 900
 viscosity = { law = "smd", index = 1.0, yield_stress_Pa = { cold = 4e4, hot = 10.0 }, consistency_Pa_sn = { cold = 4e3, hot = 100.0 }, jump_number = { cold = 1000, hot = 15 } }
-heat = { diffusivity_m2_s = 1e-3, cold_K = 330.0, hot_K = 360.0 }
+heat = { diffusivity_m2_s = 1e-3, cold_K = 330.0, hot_K = 360.0, specific_heat_J_kgK = 2000, latent_heat_J_kg = 1e5, emissivity = 0.9 }
 [[body]]
 mesh = "assets/bunny.obj"
 material = "wax"
@@ -103,6 +103,14 @@ stand_at_y_m = 0.0
 temperature_K = { bottom = 300.0, top = 400.0 }
 [[collider]]
 mesh = "ground"
+temperature_K = 290
+[ambient]
+temperature_K = 290
+heat_transfer_W_m2K = 500
+[[heat_source]]
+position_m = [0.0, 0.9, 0.0]
+radius_m = 0.4
+power_W = 20000
 [camera]
 width = 160
 height = 90
@@ -155,6 +163,13 @@ TEST_F(CommandLine, RunMakesEveryFileAndATrueReport) {
     EXPECT_LE(dt["min"].get<double>(), dt["mean"].get<double>());
     EXPECT_LE(dt["mean"].get<double>(), dt["max"].get<double>());
     EXPECT_NEAR(dt["mean"].get<double>() * entry["simulate"]["steps"].get<int>(), 1.0 / 24.0, 1e-9);
+    const auto& heat = entry["simulate"]["heat"];
+    const auto passed = [&](const char* way) { return heat["since_last_frame_J"][way].get<double>(); };
+    EXPECT_NEAR(passed("from_sources"), 20000.0 / 24.0, 1e-6);
+    const double lost = passed("radiated") + passed("convected") + passed("to_walls");
+    EXPECT_GT(lost, 0.0);
+    const double earlier = report["frames"][frame - 2]["simulate"]["heat"]["enthalpy_J"];
+    EXPECT_NEAR(heat["enthalpy_J"].get<double>() - earlier, passed("from_sources") - lost, 1e-5 * lost);
   }
   // Stages alone, from what the folder holds.
   const std::string first = read_file(out / "frames/frame.0003.png");

@@ -169,6 +169,70 @@ TEST(SceneReader, ColliderChoices) {
   expect_error(ground + "temperature_K = 500\nwall = false\n", "collider.1.temperature_K", "heat passes through walls only");
 }
 
+/// The good scene with more in its heat.
+std::string with_heat(const std::string& more) {
+  return replaced(good_scene, "hot_K = 400.0 }", "hot_K = 400.0, " + more + " }");
+}
+const std::string with_air = "[ambient]\ntemperature_K = 290\nheat_transfer_W_m2K = 10\n";
+
+TEST(SceneReader, LatentHeatAndWhatTheSurfaceLoses) {
+  const Scene scene = read_scene(write_scene_file(
+      with_heat("specific_heat_J_kgK = 2000, latent_heat_J_kg = 2e5, emissivity = 0.9") + with_air +
+      "[[heat_source]]\nposition_m = [1, 2, 3]\nradius_m = 0.1\ntemperature_K = 1600\nheat_transfer_W_m2K = 50\nfrom_s = 1\nuntil_s = 2\n"));
+  EXPECT_EQ(scene.materials[0].heat->specific_heat, 2000.0);
+  EXPECT_EQ(scene.materials[0].heat->latent_heat, 2e5);
+  EXPECT_EQ(*scene.ambient->temperature, 290.0);
+  EXPECT_EQ(*scene.heat_sources.at(0).temperature, 1600.0);
+  const std::string text = write_scene(scene);
+  EXPECT_EQ(write_scene(read_scene(write_scene_file(text))), text);
+  // A sharp melting point is one temperature.
+  EXPECT_NO_THROW(read_scene(write_scene_file(
+      replaced(with_heat("specific_heat_J_kgK = 2000, latent_heat_J_kg = 2e5"), "hot_K = 400.0", "hot_K = 300.0"))));
+}
+
+TEST(SceneReader, HeatThatCannotBe) {
+  expect_error(with_heat("latent_heat_J_kg = 2e5"), "heat.latent_heat_J_kg", "needs specific_heat_J_kgK");
+  expect_error(with_heat("specific_heat_J_kgK = 2000, emissivity = 1.5") + with_air, "heat.emissivity", "from 0 and up to 1, is 1.5");
+  expect_error(with_heat("specific_heat_J_kgK = 2000, emissivity = 0.9"), "heat.emissivity", "needs an [ambient]");
+  expect_error(with_heat("specific_heat_J_kgK = 2000") + "[ambient]\nheat_transfer_W_m2K = 10\n", ":22: ambient.temperature_K", "missing");
+  expect_error(with_heat("specific_heat_J_kgK = 2000") + "[ambient]\ntemperature_K = 290\n", "ambient.heat_transfer_W_m2K",
+               "nothing is lost");
+  expect_error(with_heat("specific_heat_J_kgK = 2000") + "[ambient]\ntemperature_K = -5\nheat_transfer_W_m2K = 1\n",
+               ":23: ambient.temperature_K", "of at least 0, is -5");
+  expect_error(std::string(good_scene) + with_air, "heat.specific_heat_J_kgK", "missing: [ambient] and [[heat_source]] exchange energy");
+  expect_error(replaced(good_scene, "cold_K = 300.0", "cold_K = -300.0"), "heat.cold_K", "of at least 0, is -300");
+}
+
+TEST(SceneReader, HeatSourcesThatCannotBe) {
+  const std::string source = with_heat("specific_heat_J_kgK = 2000") + "[[heat_source]]\n";
+  expect_error(source, "heat_source.0.radius_m", "missing");
+  expect_error(source + "radius_m = 1\n", "heat_source.0.power_W", "give power_W, or temperature_K");
+  expect_error(source + "radius_m = 1\npower_W = 5\ntemperature_K = 900\n", "heat_source.0.power_W", "not both");
+  expect_error(source + "radius_m = 1\ntemperature_K = 900\n", "heat_source.0.heat_transfer_W_m2K", "missing");
+  expect_error(source + "radius_m = 1\npower_W = 5\nfrom_s = 3\nuntil_s = 2\n", "heat_source.0.until_s", "must be after from_s = 3, is 2");
+  expect_error(source + "radius_m = 0\npower_W = 5\n", "heat_source.0.radius_m", "above 0, is 0");
+}
+
+TEST(SceneReader, PropertiesThatFollowTemperature) {
+  const auto with_yield = [](const std::string& value) { return replaced(good_scene, "yield_stress_Pa = 50.0", "yield_stress_Pa = " + value); };
+  const Scene table = read_scene(write_scene_file(with_yield("{ temperature_K = [300, 350, 400], values = [50, 5, 0] }")));
+  EXPECT_EQ(table.materials[0].viscosity.yield_stress->value, (std::vector<double>{50.0, 5.0, 0.0}));
+  const Scene exponential = read_scene(write_scene_file(with_yield("{ reference = 50, reference_K = 300, rate_1_K = 0.05 }")));
+  EXPECT_EQ(exponential.materials[0].viscosity.yield_stress->rate, 0.05);
+  for (const Scene& scene : {table, exponential}) {
+    const std::string text = write_scene(scene);
+    EXPECT_EQ(write_scene(read_scene(write_scene_file(text))), text);
+  }
+  expect_error(with_yield("{ temperature_K = [300, 350, 350], values = [50, 5, 0] }"), "yield_stress_Pa.temperature_K",
+               "must rise from one to the next, but 350 is followed by 350");
+  expect_error(with_yield("{ temperature_K = [300, 350], values = [50] }"), "yield_stress_Pa.values", "must be as many as temperature_K, which has 2, are 1");
+  expect_error(with_yield("{ temperature_K = [300], values = [50] }"), "yield_stress_Pa.temperature_K", "at least two");
+  expect_error(with_yield("{ temperature_K = [300, 350], values = [50, -1] }"), "yield_stress_Pa.values[1]", "of at least 0, is -1");
+  expect_error(with_yield("{ reference = 50, rate_1_K = 0.05 }"), "yield_stress_Pa.reference_K", "missing");
+  expect_error(replaced(with_yield("{ reference = 50, reference_K = 300, rate_1_K = 0.05 }"), "heat = {", "# heat = {"), "yield_stress_Pa",
+               "follows temperature, but the material has no heat");
+}
+
 TEST(SceneReader, ReportsAllErrorsAtOnceInTheOrderOfTheFile) {
   std::string bad = replaced(good_scene, "frames = 10", "frames = -1\ncolour = 3");
   bad = replaced(bad, "material = \"wax\"", "material = \"lava\"");
