@@ -1,7 +1,6 @@
 #include "assets/chair.h"
 
 #include "assets/implicit_mesh.h"
-
 #include <cmath>
 
 namespace smelt {

@@ -1,7 +1,6 @@
 #include "assets/hand.h"
 
 #include "assets/implicit_mesh.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,7 +37,8 @@ Vec3 finger_direction(double aside, double curl) {
 }
 
 /// A chain of bones, each bent on by `bend` degrees from the one before.
-void add_chain(std::vector<Bone>& bones, Vec3 from, double aside, double curl, double bend, const std::vector<double>& lengths, double radius) {
+void add_chain(std::vector<Bone>& bones, Vec3 from, double aside, double curl, double bend,
+               const std::vector<double>& lengths, double radius) {
   for (const double length : lengths) {
     const Vec3 to = from + length * finger_direction(aside, curl);
     bones.push_back({from, to, radius});

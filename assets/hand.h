@@ -5,8 +5,8 @@
 
 namespace smelt {
 
-/// Stands on y = 0, about 1.2 high; the palm faces up and towards +z, the fingers spread and curl upwards. One closed piece, on
-/// cells of `cell`.
+/// Stands on y = 0, about 1.2 high; the palm faces up and towards +z, the fingers spread and curl upwards. One closed
+/// piece, on cells of `cell`.
 TriangleMesh make_hand(double cell);
 
 }  // namespace smelt

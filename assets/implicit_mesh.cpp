@@ -34,7 +34,8 @@ SparseField make_blocks(const Box3& box, double cell) {
 
 }  // namespace
 
-TriangleMesh make_implicit_mesh(const std::function<double(const Vec3&)>& distance, const Box3& box, double cell, int passes) {
+TriangleMesh make_implicit_mesh(const std::function<double(const Vec3&)>& distance, const Box3& box, double cell,
+                                int passes) {
   SparseField field = make_blocks(box, cell);
   tbb::parallel_for(std::size_t{0}, field.n_blocks(), [&](std::size_t block) {
     const Lattice p = lattice_from_key(field.key[block]);

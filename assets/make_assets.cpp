@@ -1,13 +1,13 @@
 // Writes the meshes of our own making into the folder given: make_assets assets
 
-#include "assets/chair.h"
-#include "assets/hand.h"
 #include "core/error.h"
 #include "io/obj.h"
 #include "surfacing/smooth_mesh.h"
 
 #include <fmt/format.h>
 
+#include "assets/chair.h"
+#include "assets/hand.h"
 #include <cstdio>
 #include <filesystem>
 
@@ -18,7 +18,8 @@ void write_mesh(const std::filesystem::path& path, smelt::TriangleMesh mesh) {
   surface.normals = smelt::compute_vertex_normals(mesh);
   surface.mesh = std::move(mesh);
   smelt::write_obj(path, surface);
-  fmt::print("{}: {} triangles, volume {:.6g}\n", path.string(), surface.mesh.triangles.size(), smelt::compute_volume(surface.mesh));
+  fmt::print("{}: {} triangles, volume {:.6g}\n", path.string(), surface.mesh.triangles.size(),
+             smelt::compute_volume(surface.mesh));
 }
 
 }  // namespace
