@@ -32,7 +32,7 @@ int main(int argc, char** argv) {
   try {
     const std::filesystem::path folder = argv[1];
     write_mesh(folder / "chair.obj", smelt::make_chair(0.45));
-    write_mesh(folder / "hand.obj", smelt::make_hand(0.025));
+    write_mesh(folder / "hand.obj", smelt::make_hand(0.018));
   } catch (const smelt::Error& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 3;
