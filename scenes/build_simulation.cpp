@@ -274,6 +274,7 @@ void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetu
   p.artificial_viscosity = scene.solver.artificial_viscosity;
   p.density_diffusion = scene.solver.density_diffusion;
   p.hourglass_control = scene.solver.hourglass_control;
+  p.corrected_divergence = scene.solver.corrected_divergence;
   p.xsph = scene.solver.xsph;
   p.kernel = to_kernel(scene.solver.kernel);
   p.equation_of_state.law = scene.solver.equation_of_state == "tait" ? PressureLaw::tait : PressureLaw::linear;

@@ -35,6 +35,7 @@ struct SolverSettings {
   double artificial_viscosity = 0.2;
   double density_diffusion = 0.0;
   double hourglass_control = 1.0;
+  bool corrected_divergence = false;
   double xsph = 0.3;
   std::string kernel = "cubic_spline";
   std::string equation_of_state = "linear";

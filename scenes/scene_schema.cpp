@@ -212,6 +212,9 @@ void visit_simulation(SchemaVisitor& v, Scene& s) {
     v.number({"artificial_viscosity", "alpha, damps sound"}, s.solver.artificial_viscosity, {0.0, 10.0});
     v.number({"density_diffusion", "delta, smooths pressure noise in fluids with little viscosity; 0.1 to 0.3"}, s.solver.density_diffusion,
              {0.0, 1.0});
+    v.boolean({"corrected_divergence", "density by the corrected velocity gradient, exact at a free surface: keeps thin layers and the fronts of "
+                                       "lava from swelling; of viscous scenes with `density` by continuity"},
+              s.solver.corrected_divergence);
     v.number({"hourglass_control", "share of the viscosity that acts on motions of the lattice that no velocity gradient sees; of viscous scenes"},
              s.solver.hourglass_control, unit_interval);
     v.number({"xsph", "epsilon, how much particles move with their neighbours' velocity"}, s.solver.xsph, unit_interval);

@@ -66,6 +66,8 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
   terms_.diffusion = parameters_.density_diffusion > 0.0;
   if (terms_.diffusion && parameters_.density != DensityForm::continuity)
     fail("simulation: density diffusion goes with the continuity equation; a density that is a sum has nothing to diffuse (set it to 0)");
+  if (parameters_.corrected_divergence && (!terms_.pair.stress || parameters_.density != DensityForm::continuity))
+    fail("simulation: the corrected divergence needs a material with a viscosity, and the continuity equation for the density");
   CHECK_EQ(particles_.temperature.size(), terms_.pair.heat ? n : 0);
   set_up_heat();
   if (terms_.pair.stress) {
@@ -334,6 +336,9 @@ Mat<Dim> Solver<Dim, Real>::integrate_stress(std::size_t i, double dt) {
     particles_.viscosity[i] = static_cast<float>(after.viscosity);
   }
   if (terms_.pair.hourglass) pack_hourglass(i, gradient);
+  // What the bare divergence misses where neighbours are missing; that of the walls, mirrored, stays (docs/decisions/0008-walls.md).
+  if (parameters_.corrected_divergence)
+    rates_[i].density_rate -= static_cast<Real>(particles_.density[i] * (gradient.trace() - bare_gradient.trace()));
   return to_matrix<Dim>(particles_.stress[i]) * correction;
 }
 

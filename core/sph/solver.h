@@ -42,6 +42,8 @@ struct SolverParameters {
   double density_diffusion = 0.0;     ///< delta of [Antuono 2010], on what pressure gradients do not explain; 0.1 to 0.3
   double hourglass_control = 0.0;     ///< share of the viscosity that acts on motions no gradient sees, 0 to 1; of scenes with a stress
   double xsph = 0.0;                ///< epsilon of [P 6-16]
+  /// Density changes with the divergence of the corrected velocity gradient, exact at a free surface (docs/decisions/0015-thin-flows.md).
+  bool corrected_divergence = false;
   double courant = 0.25;            ///< C of the time step
   double min_time_step = 1e-9;      ///< [s]; a smaller one is an error, not a slower simulation
   /// Repeats along each axis whose upper end is above its lower one [m]; empty: none. A particle that leaves through a face comes in
