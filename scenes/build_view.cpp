@@ -8,6 +8,7 @@
 #include "scenes/collider_motion.h"
 
 #include <algorithm>
+#include <map>
 
 namespace smelt {
 
@@ -43,6 +44,23 @@ AreaLight to_light(const LightSettings& s) {
           s.radiance.cast<float>()};
 }
 
+/// A terrain's surface is drawn smooth, its walls and bottom are not smoothed into it: their corners are made vertices of their own.
+ColliderView terrain_view(TriangleMesh mesh) {
+  std::map<std::uint32_t, std::uint32_t> copies;
+  for (auto& t : mesh.triangles) {
+    const Vec3 a = mesh.vertices[t[1]] - mesh.vertices[t[0]], b = mesh.vertices[t[2]] - mesh.vertices[t[0]];
+    const double up = a[2] * b[0] - a[0] * b[2];
+    if (up > 1e-6 * a.norm() * b.norm()) continue;
+    for (std::uint32_t& v : t) {
+      const auto [copy, is_new] = copies.try_emplace(v, static_cast<std::uint32_t>(mesh.vertices.size()));
+      if (is_new) mesh.vertices.push_back(Vec3(mesh.vertices[v]));
+      v = copy->second;
+    }
+  }
+  std::vector<Vec3f> normals = compute_vertex_normals(mesh);
+  return {std::move(mesh), std::move(normals), {}};
+}
+
 }  // namespace
 
 RenderScene build_view(const Scene& scene) {
@@ -72,9 +90,8 @@ RenderScene build_view(const Scene& scene) {
   for (const ColliderSettings& collider : scene.colliders)
     if (collider.mesh != "ground") {
       TriangleMesh& mesh = obstacles[view.colliders.size()];
-      std::vector<Vec3f> normals;
-      if (is_height_field(collider.mesh)) normals = compute_vertex_normals(mesh);
-      view.colliders.push_back({std::move(mesh), std::move(normals), collider.colour.cast<float>()});
+      view.colliders.push_back(is_height_field(collider.mesh) ? terrain_view(std::move(mesh)) : ColliderView{std::move(mesh), {}, {}});
+      view.colliders.back().colour = collider.colour.cast<float>();
     }
   return view;
 }

@@ -7,6 +7,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace smelt {
@@ -46,25 +47,30 @@ void apply_steps(std::vector<Vec3f>& x, const std::vector<Vec3f>* source, const 
   }
 }
 
-/// Signed volume and area of each piece, in the order of faces.
+/// Of each piece, in the order of faces: signed volume, the area that moves, and the mean length of an edge.
 struct Measures {
-  std::vector<double> volume, area;
+  std::vector<double> volume, area, edge;
 };
 
 Measures measure(const TriangleMesh& mesh, const MeshComponents& pieces, std::span<const float> strength) {
-  Measures out{std::vector<double>(pieces.count), std::vector<double>(pieces.count)};
+  Measures out{std::vector<double>(pieces.count), std::vector<double>(pieces.count), std::vector<double>(pieces.count)};
+  std::vector<double> n_faces(pieces.count);
   const Vec3 origin = mesh.vertices.front();
   for (const auto& t : mesh.triangles) {
     const Vec3 a = mesh.vertices[t[0]] - origin, b = mesh.vertices[t[1]] - origin, c = mesh.vertices[t[2]] - origin;
     const std::uint32_t piece = pieces.of_vertex[t[0]];
     out.volume[piece] += a.dot(b.cross(c)) / 6.0;
     out.area[piece] += (b - a).cross(c - a).norm() / 6.0 * (strength[t[0]] + strength[t[1]] + strength[t[2]]);
+    out.edge[piece] += ((b - a).norm() + (c - b).norm() + (a - c).norm()) / 3.0;
+    n_faces[piece] += 1.0;
   }
+  for (std::size_t p = 0; p < pieces.count; ++p) out.edge[p] /= std::max(1.0, n_faces[p]);
   return out;
 }
 
 /// Newton's method on the shift of each piece along its normals: d volume / d shift = area. Small pieces that shrank a
-/// lot overshoot at first, hence up to 8 rounds; large ones are done after one.
+/// lot overshoot at first, hence up to 8 rounds; large ones are done after one. A vertex moves by no more than half an edge a round: where
+/// little of a piece is smoothed that little cannot give back all the volume, and must not fly off in trying.
 void restore_volumes(TriangleMesh& mesh, const MeshComponents& pieces, std::span<const float> strength,
                      const std::vector<double>& volume) {
   for (int round = 0; round < 8; ++round) {
@@ -74,7 +80,8 @@ void restore_volumes(TriangleMesh& mesh, const MeshComponents& pieces, std::span
     for (std::size_t p = 0; p < shift.size(); ++p) {
       const double missing = volume[p] - now.volume[p];
       if (std::abs(missing) <= 1e-5 * std::abs(volume[p]) || now.area[p] <= 0.0) continue;
-      shift[p] = missing / now.area[p];
+      const double most = 0.5 * now.edge[p];  // strengths are 1 at most
+      shift[p] = std::clamp(missing / now.area[p], -most, most);
       done = false;
     }
     if (done) return;

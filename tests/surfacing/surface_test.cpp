@@ -199,5 +199,31 @@ TEST(Surface, RefusesBadInput) {
             1u);
 }
 
+// Loose webs of particles: threads, holes and drops, where smoothing is weak nearly everywhere and volumes are hard to give back.
+TEST(Surface, LooseWebsStayAtTheirParticles) {
+  double farthest = 0.0;
+  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(0.0, 1.0);
+    ParticleFrame frame;
+    frame.spacing = 1.0;
+    frame.mass = 1000.0;
+    Box3 bounds;
+    for (int i = 0; i < 900; ++i) {
+      // A crumpled sheet, thinned out.
+      const double x = 16.0 * uniform(random), z = 16.0 * uniform(random);
+      frame.position.push_back(Vec3(x, 2.0 * std::sin(0.5 * x + seed) * std::cos(0.4 * z) + 1.5 * uniform(random), z));
+      frame.velocity.push_back(Vec3f::Zero());
+      frame.density.push_back(1000.0f);
+      frame.id.push_back(i);
+      bounds.extend(frame.position.back());
+    }
+    const SurfaceMesh surface = build_surface(frame, {});
+    for (const Vec3& v : surface.mesh.vertices)
+      farthest = std::max({farthest, (bounds.lower - v).maxCoeff(), (v - bounds.upper).maxCoeff()});
+  }
+  EXPECT_LT(farthest, 1.5);
+}
+
 }  // namespace
 }  // namespace smelt
