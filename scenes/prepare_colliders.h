@@ -8,10 +8,11 @@
 
 namespace smelt {
 
-/// Decides for every collider of `setup` but the ground whether it bounds a solid (docs/conventions.md), turns those that are wound inward,
-/// leaves out the particles that start inside a solid, and adds to the warnings what was done and what looks wrong: winding, holes, a size
-/// that no unit fits, a sheet that cuts through a body. `first[k]` is the first particle of body k; one more entry ends the last. Throws Error, naming
-/// both files, where a body is neither inside a solid nor outside it: more than half of its particles lie in, but not all.
+/// Decides for every collider of `setup` but the ground whether it bounds a solid (docs/conventions.md), turns those
+/// that are wound inward, leaves out the particles that start inside a solid, and adds to the warnings what was done
+/// and what looks wrong: winding, holes, a size that no unit fits, a sheet that cuts through a body. `first[k]` is the
+/// first particle of body k; one more entry ends the last. Throws Error, naming both files, where a body is neither
+/// inside a solid nor outside it: more than half of its particles lie in, but not all.
 void prepare_colliders(const Scene& scene, const std::vector<std::size_t>& first, SimulationSetup& setup);
 
 }  // namespace smelt

@@ -43,7 +43,8 @@ struct WallTree::Query {
     const double length = area.norm(), plane = (point - centre).dot(area) / length;
     for (std::size_t k = 0; k < patches.n; ++k) {
       const WallPatch& p = patches.patch[k];
-      if (p.area.dot(area) > flat_cosine * p.area.norm() * length && (plane > 0.0) == (p.plane > 0.0) && std::abs(plane - p.plane) < 0.25 * h)
+      if (p.area.dot(area) > flat_cosine * p.area.norm() * length && (plane > 0.0) == (p.plane > 0.0) &&
+          std::abs(plane - p.plane) < 0.25 * h)
         return static_cast<int>(k);
     }
     if (patches.n == patches.patch.size()) patches.patch.emplace_back();
@@ -66,7 +67,8 @@ struct WallTree::Query {
     if (depth == 0 || radius <= largest(distance)) return add(patch, whole);
     const Vec3 ab = 0.5 * (t[0] + t[1]), bc = 0.5 * (t[1] + t[2]), ca = 0.5 * (t[2] + t[0]);
     for (const Simplex<3>& piece : {Simplex<3>{t[0], ab, ca}, {t[1], bc, ab}, {t[2], ca, bc}, {ab, bc, ca}})
-      cut(piece, 0.5 * radius, {(piece[0] + piece[1] + piece[2]) / 3.0, 0.25 * whole.area, 0.25 * whole.spread}, depth - 1, patch);
+      cut(piece, 0.5 * radius, {(piece[0] + piece[1] + piece[2]) / 3.0, 0.25 * whole.area, 0.25 * whole.spread},
+          depth - 1, patch);
   }
 };
 
@@ -105,7 +107,8 @@ void WallTree::build(std::uint32_t node) {
     const Vec3 off = sample.centre - n.centre;
     n.spread += sample.area.norm() / total * (sample.spread + off * off.transpose());
   }
-  for (std::uint32_t k = n.begin; k < n.end; ++k) n.radius = std::max(n.radius, circumscribed_radius(facets_[order_[k]], n.centre));
+  for (std::uint32_t k = n.begin; k < n.end; ++k)
+    n.radius = std::max(n.radius, circumscribed_radius(facets_[order_[k]], n.centre));
   if (n.end - n.begin <= leaf_size) {
     nodes_[node] = n;
     return;
@@ -114,9 +117,12 @@ void WallTree::build(std::uint32_t node) {
   int axis = 0;
   box.extent().maxCoeff(&axis);
   const std::uint32_t middle = (n.begin + n.end) / 2;
-  std::nth_element(order_.begin() + n.begin, order_.begin() + middle, order_.begin() + n.end, [&](std::uint32_t a, std::uint32_t b) {
-    return leaves_[a].sample.centre[axis] != leaves_[b].sample.centre[axis] ? leaves_[a].sample.centre[axis] < leaves_[b].sample.centre[axis] : a < b;
-  });
+  std::nth_element(order_.begin() + n.begin, order_.begin() + middle, order_.begin() + n.end,
+                   [&](std::uint32_t a, std::uint32_t b) {
+                     return leaves_[a].sample.centre[axis] != leaves_[b].sample.centre[axis]
+                                ? leaves_[a].sample.centre[axis] < leaves_[b].sample.centre[axis]
+                                : a < b;
+                   });
   n.left = static_cast<std::uint32_t>(nodes_.size());
   nodes_[node] = n;
   Node child;
@@ -136,7 +142,8 @@ void WallTree::visit(std::uint32_t node, int patch, Query& query) const {
   if (distance > query.reach + query.slack) return;
   if (n.flat) {
     if (n.radius <= query.largest(distance)) return query.add(patch, {n.centre, n.area, n.spread});
-    // All of it is one patch if it is short enough to be level. Ten degrees over a quarter of h stay far below the planes' h/4.
+    // All of it is one patch if it is short enough to be level. Ten degrees over a quarter of h stay far below the
+    // planes' h/4.
     if (patch == no_patch && n.radius <= query.h) patch = query.patch_of(n.centre, n.area);
   }
   if (n.left == 0) {

@@ -29,15 +29,16 @@ struct WallPatches {
   std::size_t n = 0;  ///< of them are in use
 };
 
-/// The facets of one obstacle in a tree, each node with its area vector, so that what is far or small is seen as a whole. Queries may run on
-/// many threads at once.
+/// The facets of one obstacle in a tree, each node with its area vector, so that what is far or small is seen as a
+/// whole. Queries may run on many threads at once.
 class WallTree {
  public:
   explicit WallTree(std::span<const Simplex<3>> facets);
 
-  /// What stands for the facets within `reach` of `point` in integrals over kernels of smoothing length h, until the point has moved by `slack`:
-  /// samples no larger (in radius) than 0.35 of their distance and than 0.4 h, in patches of like normals (some ten degrees) and planes (h/4);
-  /// and the indices, unordered, of facets too large or too near for that. Appends to `facets`, overwrites `patches`.
+  /// What stands for the facets within `reach` of `point` in integrals over kernels of smoothing length h, until the
+  /// point has moved by `slack`: samples no larger (in radius) than 0.35 of their distance and than 0.4 h, in patches
+  /// of like normals (some ten degrees) and planes (h/4); and the indices, unordered, of facets too large or too near
+  /// for that. Appends to `facets`, overwrites `patches`.
   void gather(const Vec3& point, double h, double reach, double slack, WallPatches& patches,
               std::vector<std::uint32_t>& facets) const;
 
@@ -46,8 +47,8 @@ class WallTree {
     Vec3 centre = Vec3::Zero();  ///< of area
     Vec3 area = Vec3::Zero();    ///< sum of area vectors
     Mat3 spread = Mat3::Zero();
-    double radius = 0.0;         ///< of a ball about `centre` that holds all corners
-    bool flat = false;           ///< normals within some ten degrees of their mean
+    double radius = 0.0;               ///< of a ball about `centre` that holds all corners
+    bool flat = false;                 ///< normals within some ten degrees of their mean
     std::uint32_t begin = 0, end = 0;  ///< of its facets in order_
     std::uint32_t left = 0;            ///< child; the right one follows it; 0: a leaf
   };

@@ -1,5 +1,6 @@
-// Water at rest on triangle meshes in 3D, along no axis: in a bowl, over a slope of 30 degrees, in a box tilted by 17 degrees. The meshes are about as fine as
-// the particles, so that every kind of wall integral takes part (docs/decisions/0014-fine-walls.md).
+// Water at rest on triangle meshes in 3D, along no axis: in a bowl, over a slope of 30 degrees, in a box tilted by 17
+// degrees. The meshes are about as fine as the particles, so that every kind of wall integral takes part
+// (docs/decisions/0014-fine-walls.md).
 
 #include "tests/accuracy/measure.h"
 #include "tests/accuracy/tank.h"
@@ -23,10 +24,10 @@ constexpr double formed = 0.5;
 struct Vessel {
   std::string name;
   std::vector<Simplex<3>> facets;
-  std::function<double(const Vec3&)> distance;         ///< from the wall, positive in the water [m]
-  std::function<Vec3(const Vec3&)> normal;             ///< of the wall nearest to a place, into the water
-  Box<3> bounds;                                       ///< of the water [m]
-  double fill = depth;                                 ///< sites up to this height are filled [m]
+  std::function<double(const Vec3&)> distance;  ///< from the wall, positive in the water [m]
+  std::function<Vec3(const Vec3&)> normal;      ///< of the wall nearest to a place, into the water
+  Box<3> bounds;                                ///< of the water [m]
+  double fill = depth;                          ///< sites up to this height are filled [m]
   Box<3> period = {Vec3::Zero(), Vec3::Zero()};
 };
 
@@ -78,7 +79,9 @@ Vessel slope(double spacing) {
 /// A box turned by 17 degrees about z, and by 25 about y to lie along no axis.
 Vessel tilted_box(double spacing) {
   Vessel v{"box tilted by 17 degrees", {}, {}, {}, {Vec3::Constant(-0.7), Vec3::Constant(0.7)}};
-  const Mat3 turn = (Eigen::AngleAxisd(25.0 * degrees, Vec3::UnitY()) * Eigen::AngleAxisd(17.0 * degrees, Vec3::UnitZ())).toRotationMatrix();
+  const Mat3 turn =
+      (Eigen::AngleAxisd(25.0 * degrees, Vec3::UnitY()) * Eigen::AngleAxisd(17.0 * degrees, Vec3::UnitZ()))
+          .toRotationMatrix();
   const double a = 0.55, b = 0.4, tall = 1.0;
   const Vec3 x = turn.col(0), y = turn.col(1), z = turn.col(2), corner = -0.5 * a * x - 0.5 * b * z;
   std::vector<HalfSpace> walls{{corner, y}, {corner, x}, {corner, z}, {corner + a * x, -x}, {corner + b * z, -z}};
@@ -99,7 +102,8 @@ Vessel bowl(double spacing) {
   const int n_rings = static_cast<int>(0.6 * std::numbers::pi * radius / (0.7 * spacing)), n = 4 * n_rings;
   const auto at = [&](int i, int k) {
     const double polar = 0.6 * std::numbers::pi * i / n_rings, azimuth = 2.0 * std::numbers::pi * k / n;
-    return Vec3(centre + radius * Vec3(std::sin(polar) * std::cos(azimuth), -std::cos(polar), std::sin(polar) * std::sin(azimuth)));
+    return Vec3(centre + radius * Vec3(std::sin(polar) * std::cos(azimuth), -std::cos(polar),
+                                       std::sin(polar) * std::sin(azimuth)));
   };
   for (int i = 0; i < n_rings; ++i)
     for (int k = 0; k < n; ++k) {
@@ -112,7 +116,8 @@ Vessel bowl(double spacing) {
   return v;
 }
 
-/// All sites in the vessel up to its filling, those nearer to the wall than half a spacing moved that far off. The level follows from their volume.
+/// All sites in the vessel up to its filling, those nearer to the wall than half a spacing moved that far off. The
+/// level follows from their volume.
 Particles<3> fill(const Vessel& v, double spacing, double& level) {
   std::vector<Vec3> sites;
   Box<3> box = v.bounds;
@@ -177,7 +182,8 @@ double gauge_excess(const Solver<3, float>& solver, double level, const Vec3& po
     const double q = (p.position[i] - point).norm() / reach;
     if (q >= 1.0) continue;
     const double weight = std::pow(1.0 - q, 4) * (1.0 + 4.0 * q);
-    sum += weight * (linear_pressure(solver.parameters().sound_speed, water_density, p.density[i]) - water_density * gravity * (level - p.position[i][1]));
+    sum += weight * (linear_pressure(solver.parameters().sound_speed, water_density, p.density[i]) -
+                     water_density * gravity * (level - p.position[i][1]));
     weights += weight;
   }
   return weights > 0.0 ? sum / weights : std::numeric_limits<double>::quiet_NaN();
@@ -190,8 +196,11 @@ double pressure_error(const Solver<3, float>& solver, const Vessel& v, double le
   for (std::size_t f = 0; f < v.facets.size(); f += 3) {
     const Vec3& point = v.facets[f][0];
     if (point[1] > level - 2.0 * spacing || v.distance(point) < -1e-9) continue;
-    if (!v.period.empty() && v.period.upper[2] > 0.0 && (point[2] < 2.0 * spacing || point[2] > v.period.upper[2] - 2.0 * spacing)) continue;
-    const double error = std::abs(gauge_excess(solver, level, point)) / (water_density * gravity * (level - lowest + 0.5 * spacing));
+    if (!v.period.empty() && v.period.upper[2] > 0.0 &&
+        (point[2] < 2.0 * spacing || point[2] > v.period.upper[2] - 2.0 * spacing))
+      continue;
+    const double error =
+        std::abs(gauge_excess(solver, level, point)) / (water_density * gravity * (level - lowest + 0.5 * spacing));
     if (!std::isnan(worst) && !(error <= worst)) worst = error;
   }
   return worst;
@@ -205,9 +214,11 @@ void test_pool(Vessel (*make)(double), int n_deep) {
   Particles<3> particles = fill(v, spacing, level);
   const std::size_t n = particles.size();
 
-  // As a viscous fluid first, whose pressure at rest is the same, to where the particles find their places along the wall.
+  // As a viscous fluid first, whose pressure at rest is the same, to where the particles find their places along the
+  // wall.
   {
-    Solver<3, float> oil(parameters, {newtonian_material(water_density, 0.02 * water_density)}, make_mesh_wall(v, 0.0), std::move(particles));
+    Solver<3, float> oil(parameters, {newtonian_material(water_density, 0.02 * water_density)}, make_mesh_wall(v, 0.0),
+                         std::move(particles));
     oil.prepare();
     advance_by(oil, 1.0);
     particles = oil.particles();
@@ -239,13 +250,16 @@ void test_pool(Vessel (*make)(double), int n_deep) {
   const std::string resolution = fmt::format("{} particles; {} triangles; {:g} s", n, v.facets.size(), duration);
   report_row({problem, "pressure on the wall / rho g H; max after 0.5 s", resolution, worst});
   report_row({problem, "fastest particle at the end [m/s]", resolution, speed, 0.1});
-  report_row({problem, "drift of particles [spacings]; rms", resolution, std::sqrt(drift / static_cast<double>(n)) / spacing, 1.0});
+  report_row({problem, "drift of particles [spacings]; rms", resolution,
+              std::sqrt(drift / static_cast<double>(n)) / spacing, 1.0});
   report_row({problem, "way of a centre behind the wall [spacings]", resolution, deepest / spacing, 0.0});
 }
 
-// The pressure has no bar yet: 3 % is asked for, and 14 to 16 % were measured a second after the water was let go (docs/accuracy.md). That the water stays
-// where it is, and in its vessel, has.
-TEST(MeshPool, Slope) { test_pool(slope, 10); }
+// The pressure has no bar yet: 3 % is asked for, and 14 to 16 % were measured a second after the water was let go
+// (docs/accuracy.md). That the water stays where it is, and in its vessel, has.
+TEST(MeshPool, Slope) {
+  test_pool(slope, 10);
+}
 TEST(MeshPool, TiltedBox) {
   if (!full_run()) GTEST_SKIP() << "takes long";
   test_pool(tilted_box, 10);

@@ -1,8 +1,7 @@
 // Colliders as people hand them in: wound the wrong way, open, of another unit, where fluid starts.
 
-#include "scenes/build_simulation.h"
-
 #include "core/error.h"
+#include "scenes/build_simulation.h"
 #include "scenes/scene_reader.h"
 #include "tests/meshes.h"
 
@@ -61,15 +60,18 @@ TEST(PrepareColliders, WhatIsNotQuiteClosedIsASheetAndSaidToBe) {
 
 TEST(PrepareColliders, ASheetMayBeFlatButNotEmptyOrNaN) {
   EXPECT_TRUE(build_simulation(scene_with("assets/bad/flat.obj", 1.0, Vec3(5, 0, 0))).warnings.empty());
-  for (const char* bad : {"assets/bad/empty.obj", "assets/bad/no_faces.obj", "assets/bad/nan.obj", "assets/bad/degenerate.obj", "assets/bad/bad_index.obj"}) {
+  for (const char* bad : {"assets/bad/empty.obj", "assets/bad/no_faces.obj", "assets/bad/nan.obj",
+                          "assets/bad/degenerate.obj", "assets/bad/bad_index.obj"}) {
     const std::string message = message_of<Error>([&] { build_simulation(scene_with(bad, 1.0, Vec3::Zero())); });
     EXPECT_NE(message.find(bad), std::string::npos) << message;
   }
 }
 
 TEST(PrepareColliders, SizesThatNoUnitFitsAreNamed) {
-  expect_warning(build_simulation(scene_with("assets/bad/open_box.obj", 1000.0, Vec3(50, 0, 0))), "open_box.obj", "enormous, 1e+03 x 1e+03 x 1e+03 m");
-  expect_warning(build_simulation(scene_with("assets/bad/open_box.obj", 0.001, Vec3(50, 0, 0))), "open_box.obj", "tiny, 0.001 x 0.001 x 0.001 m");
+  expect_warning(build_simulation(scene_with("assets/bad/open_box.obj", 1000.0, Vec3(50, 0, 0))), "open_box.obj",
+                 "enormous, 1e+03 x 1e+03 x 1e+03 m");
+  expect_warning(build_simulation(scene_with("assets/bad/open_box.obj", 0.001, Vec3(50, 0, 0))), "open_box.obj",
+                 "tiny, 0.001 x 0.001 x 0.001 m");
 }
 
 // The bunny's chest is some 0.3 m around this place.

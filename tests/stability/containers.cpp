@@ -21,7 +21,8 @@ constexpr double pi = std::numbers::pi;
 
 std::vector<Simplex<3>> facets_of(const TriangleMesh& mesh) {
   std::vector<Simplex<3>> facets;
-  for (const auto& t : mesh.triangles) facets.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+  for (const auto& t : mesh.triangles)
+    facets.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
   return facets;
 }
 
@@ -45,7 +46,10 @@ void add_ring(std::vector<Simplex<3>>& facets, const Vec<2>& lower, const Vec<2>
 }  // namespace
 
 Container make_closed_box() {
-  Container c{"box", facets_of(make_box(Vec3::Constant(-0.5), Vec3::Constant(0.5))), {Vec3::Constant(-0.5), Vec3::Constant(0.5)}, 0.01};
+  Container c{"box",
+              facets_of(make_box(Vec3::Constant(-0.5), Vec3::Constant(0.5))),
+              {Vec3::Constant(-0.5), Vec3::Constant(0.5)},
+              0.01};
   c.contains = [](const Vec3& x) { return x.cwiseAbs().maxCoeff() < 0.5; };
   return c;
 }
@@ -60,7 +64,8 @@ Container make_funnel() {
   c.contains = [=](const Vec3& x) {
     const double from_axis = std::hypot(x[0], x[2]);
     // A centre may stand in the hole, by less than what its sphere spans there.
-    return x[1] > -0.2 * hole && x[1] < 1.0 && from_axis < 0.5 && from_axis < hole + (0.5 - hole) * std::max(x[1], 0.0) / 0.6;
+    return x[1] > -0.2 * hole && x[1] < 1.0 && from_axis < 0.5 &&
+           from_axis < hole + (0.5 - hole) * std::max(x[1], 0.0) / 0.6;
   };
   return c;
 }
@@ -92,14 +97,18 @@ Container make_sieve() {
       };
       add_quad(c.facets, at(-half, 0), at(half, 0), at(half, top), at(-half, top));
     }
-  c.contains = [=](const Vec3& x) { return x[1] > 0.0 && x[1] < top && std::max(std::abs(x[0]), std::abs(x[2])) < half; };
+  c.contains = [=](const Vec3& x) {
+    return x[1] > 0.0 && x[1] < top && std::max(std::abs(x[0]), std::abs(x[2])) < half;
+  };
   return c;
 }
 
 Container make_bowl() {
   constexpr int n_rings = 16, n = 48;
   Container c{"bowl", {}, {Vec3(-0.5, -0.5, -0.5), Vec3(0.5, 0.0, 0.5)}, 0.01};
-  const auto on_ball = [](int k) { return Vec<2>(0.5 * std::sin(0.5 * pi * k / n_rings), -0.5 * std::cos(0.5 * pi * k / n_rings)); };
+  const auto on_ball = [](int k) {
+    return Vec<2>(0.5 * std::sin(0.5 * pi * k / n_rings), -0.5 * std::cos(0.5 * pi * k / n_rings));
+  };
   for (int k = 0; k < n_rings; ++k) add_ring(c.facets, k == 0 ? Vec<2>(0.0, -0.5) : on_ball(k), on_ball(k + 1), n);
   add_ring(c.facets, {0.5, 0.0}, {0.0, 0.0}, n);
   c.contains = [](const Vec3& x) { return x.norm() < 0.5 && x[1] < 1e-9; };
@@ -128,7 +137,9 @@ struct Ball {
 
 constexpr std::array<ContactResponse, 5> responses{{{0.0, 0.0}, {1.0, 0.0}, {1.0, 1.0}, {0.5, 0.5}, {0.9, 0.95}}};
 
-double uniform(std::mt19937_64& random) { return static_cast<double>(random() >> 11) * 0x1p-53; }
+double uniform(std::mt19937_64& random) {
+  return static_cast<double>(random() >> 11) * 0x1p-53;
+}
 
 Vec3 random_direction(std::mt19937_64& random) {
   const double z = 2.0 * uniform(random) - 1.0, angle = 2.0 * pi * uniform(random), across = std::sqrt(1.0 - z * z);
@@ -206,10 +217,16 @@ Shaken shake(const Container& container, const ShakeOptions& options) {
         return seen;
       },
       [](const Watch& a, const Watch& b) {
-        return Watch{a.n_lost + b.n_lost, std::max(a.deepest, b.deepest), a.way + b.way, a.seconds + b.seconds, a.n_hits + b.n_hits};
+        return Watch{a.n_lost + b.n_lost, std::max(a.deepest, b.deepest), a.way + b.way, a.seconds + b.seconds,
+                     a.n_hits + b.n_hits};
       });
   const double n_moves = static_cast<double>(n) * options.n_steps;
-  return {n, watch.n_lost, watch.deepest, static_cast<double>(watch.n_hits) / n_moves, watch.way / n_moves / container.radius, watch.seconds};
+  return {n,
+          watch.n_lost,
+          watch.deepest,
+          static_cast<double>(watch.n_hits) / n_moves,
+          watch.way / n_moves / container.radius,
+          watch.seconds};
 }
 
 }  // namespace smelt

@@ -1,4 +1,5 @@
-// Containers that hold what is shaken in them, and spheres that rest for long. The whole size, 10^5 spheres for 10^4 steps, is bench_containers.
+// Containers that hold what is shaken in them, and spheres that rest for long. The whole size, 10^5 spheres for 10^4
+// steps, is bench_containers.
 
 #include "tests/stability/containers.h"
 
@@ -27,11 +28,21 @@ void test_container(const Container& container) {
   EXPECT_GT(seen.way, 0.1) << "they hardly move";
 }
 
-TEST(Containers, Box) { test_container(make_closed_box()); }
-TEST(Containers, Funnel) { test_container(make_funnel()); }
-TEST(Containers, Sieve) { test_container(make_sieve()); }
-TEST(Containers, Bowl) { test_container(make_bowl()); }
-TEST(Containers, Dragon) { test_container(make_dragon()); }
+TEST(Containers, Box) {
+  test_container(make_closed_box());
+}
+TEST(Containers, Funnel) {
+  test_container(make_funnel());
+}
+TEST(Containers, Sieve) {
+  test_container(make_sieve());
+}
+TEST(Containers, Bowl) {
+  test_container(make_bowl());
+}
+TEST(Containers, Dragon) {
+  test_container(make_dragon());
+}
 
 // On a floor, in an edge, in a corner and in the tip of a funnel, pressed down by gravity for a million steps.
 TEST(Containers, RestingSpheresStayWhereTheyAre) {
@@ -57,10 +68,12 @@ TEST(Containers, RestingSpheresStayWhereTheyAre) {
       std::vector<std::uint32_t> found;
       bvh.find_near(position, container.radius, found);
       for (const std::uint32_t f : found)
-        deepest = std::max(deepest, 1.0 - (position - closest_point<3>(position, container.facets[f])).norm() / container.radius);
+        deepest = std::max(
+            deepest, 1.0 - (position - closest_point<3>(position, container.facets[f])).norm() / container.radius);
     }
     EXPECT_LT(deepest, 1e-9) << container.name;
-    EXPECT_LT(moved, 1e-9) << container.name << " restitution " << response.restitution << " friction " << response.friction;
+    EXPECT_LT(moved, 1e-9) << container.name << " restitution " << response.restitution << " friction "
+                           << response.friction;
   };
   for (const ContactResponse& response : {ContactResponse{0.0, 0.0}, ContactResponse{1.0, 0.0}}) {
     rest(box, Vec3(0.1, -0.5 + box.radius, 0.2), response);

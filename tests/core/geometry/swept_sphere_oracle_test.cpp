@@ -1,14 +1,16 @@
-// Swept spheres against a brute-force oracle in higher precision, on triangles that are random and on ones that are nasty.
+// Swept spheres against a brute-force oracle in higher precision, on triangles that are random and on ones that are
+// nasty.
 //
-// The oracle shares no algebra with core/geometry/swept_sphere.cpp: it knows only the distance D(t) of the moving centre to a triangle,
-// convex in t as a triangle is convex, and finds where it falls below the radius by bisection, in long double or __float128.
+// The oracle shares no algebra with core/geometry/swept_sphere.cpp: it knows only the distance D(t) of the moving
+// centre to a triangle, convex in t as a triangle is convex, and finds where it falls below the radius by bisection, in
+// long double or __float128.
 //
 // Agreement is asked for in the radius: what was found must be exact for a sphere whose radius differs by no more than
 //   delta = 1e-9 r + 16 eps (|coordinates| + |displacement|),
-// that is, no hit is missed and no contact found late by more than delta of depth. A bound on the time itself would mean nothing: where
-// a sphere grazes, the time changes by the square root of what the radius changes by. The first term is what double leaves of a sliver's normal
-// (roundings of edges a thousand times as long as the sliver is thick), a thousandth of the 1e-6 that nothing may be deeper than; the second is the
-// rounding of the places themselves.
+// that is, no hit is missed and no contact found late by more than delta of depth. A bound on the time itself would
+// mean nothing: where a sphere grazes, the time changes by the square root of what the radius changes by. The first
+// term is what double leaves of a sliver's normal (roundings of edges a thousand times as long as the sliver is thick),
+// a thousandth of the 1e-6 that nothing may be deeper than; the second is the rounding of the places themselves.
 
 #include "core/geometry/swept_sphere.h"
 #include "core/sph/collision.h"
@@ -58,8 +60,9 @@ Point<Real> widened(const Vec3& v) {
   return {static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])};
 }
 
-/// From the triangle's nearest point to the origin, the triangle given relative to it: the least |a + u ab + v ac| with u, v >= 0 and
-/// u + v <= 1, by completing the square (u across ab first, then v); where that minimum lies outside, on the sides.
+/// From the triangle's nearest point to the origin, the triangle given relative to it: the least |a + u ab + v ac| with
+/// u, v >= 0 and u + v <= 1, by completing the square (u across ab first, then v); where that minimum lies outside, on
+/// the sides.
 template <typename Real>
 Point<Real> to_origin(const Point<Real>& a, const Point<Real>& b, const Point<Real>& c) {
   const auto along_side = [](const Point<Real>& from, const Point<Real>& to) {
@@ -99,7 +102,8 @@ Point<Real> to_origin(const Point<Real>& a, const Point<Real>& b, const Point<Re
 template <typename Real>
 class Passing {
  public:
-  Passing(const Vec3& centre, const Vec3& displacement, const Simplex<3>& t) : displacement_(widened<Real>(displacement)) {
+  Passing(const Vec3& centre, const Vec3& displacement, const Simplex<3>& t)
+      : displacement_(widened<Real>(displacement)) {
     for (int k = 0; k < 3; ++k) corner_[k] = widened<Real>(t[k]) - widened<Real>(centre);
   }
 
@@ -137,7 +141,8 @@ class Passing {
   Point<Real> displacement_;
 };
 
-/// When a sphere first comes within `radius`; infinity where it does not. One that starts within is in contact where it gets deeper.
+/// When a sphere first comes within `radius`; infinity where it does not. One that starts within is in contact where it
+/// gets deeper.
 template <typename Real>
 double oracle_time(const Passing<Real>& passing, Real radius) {
   const Real radius2 = radius * radius;
@@ -172,15 +177,26 @@ class Cases {
     Simplex<3> t{point(), point(), point()};
     const double thin = std::pow(10.0, uniform(-9, -1));
     switch (one_of(8)) {
-      case 0: t[2] = t[0] + uniform(0.01, 0.99) * (t[1] - t[0]) + thin * point(); break;  // a cap
-      case 1: t[2] = t[1] + thin * point(); break;                                         // a needle
-      case 2: t[2] = t[one_of(2)]; break;                                                  // a segment
-      case 3: t[1] = t[2] = t[0]; break;                                                   // a point
-      case 4: t[2] = t[0] + uniform(-0.5, 1.5) * (t[1] - t[0]); break;                     // collinear to a rounding
-      case 5:                                                                              // on a lattice: faces along axes
+      case 0:
+        t[2] = t[0] + uniform(0.01, 0.99) * (t[1] - t[0]) + thin * point();
+        break;  // a cap
+      case 1:
+        t[2] = t[1] + thin * point();
+        break;  // a needle
+      case 2:
+        t[2] = t[one_of(2)];
+        break;  // a segment
+      case 3:
+        t[1] = t[2] = t[0];
+        break;  // a point
+      case 4:
+        t[2] = t[0] + uniform(-0.5, 1.5) * (t[1] - t[0]);
+        break;  // collinear to a rounding
+      case 5:   // on a lattice: faces along axes
         for (Vec3& x : t) x = (2.0 * x).array().round() / 2.0;
         break;
-      default: break;
+      default:
+        break;
     }
     return t;
   }
@@ -217,7 +233,8 @@ Sweep sweep_at(Cases& cases, const Simplex<3>& t) {
   }
   s.centre = aim + distance * direction;
   Vec3 target = aim;
-  if (cases.one_of(2) == 0) target += cases.uniform(0.5, 1.5) * s.radius * cases.direction();  // past it by about a radius
+  if (cases.one_of(2) == 0)
+    target += cases.uniform(0.5, 1.5) * s.radius * cases.direction();  // past it by about a radius
   s.displacement = cases.uniform(0.0, 1.5) * (target - s.centre);
   if (cases.one_of(20) == 0) s.displacement = -s.displacement;
   return s;
@@ -229,10 +246,13 @@ double tolerance(const Sweep& s, double magnitude) {
 
 /// Whether `time` (or infinity) is that of a sphere whose radius is right to `delta`.
 template <typename Real>
-void expect_agreement(const Passing<Real>& passing, double radius, double delta, double time, const std::string& which) {
+void expect_agreement(const Passing<Real>& passing, double radius, double delta, double time,
+                      const std::string& which) {
   const double earliest = oracle_time<Real>(passing, static_cast<Real>(radius) + static_cast<Real>(delta));
-  const double latest = oracle_time<Real>(passing, std::max(static_cast<Real>(radius) - static_cast<Real>(delta), Real(0)));
-  // A sphere that overlaps as it is and one that just does not: both answers stand where the distance is the radius to within delta.
+  const double latest =
+      oracle_time<Real>(passing, std::max(static_cast<Real>(radius) - static_cast<Real>(delta), Real(0)));
+  // A sphere that overlaps as it is and one that just does not: both answers stand where the distance is the radius to
+  // within delta.
   constexpr double of_time = 1e-15;
   const Real start = passing.distance2(0);
   const Real outer = static_cast<Real>(radius + delta), inner = static_cast<Real>(std::max(radius - delta, 0.0));
@@ -267,7 +287,8 @@ int check_triangles(std::uint64_t seed, int n, double scale, const Vec3& place) 
     if (!contact) continue;
     ++n_hits;
     EXPECT_NEAR(contact->normal.norm(), 1.0, 1e-12) << which;
-    EXPECT_LE(contact->normal.dot(s.displacement), 1e-9 * s.displacement.norm()) << which << ": hit something it moves away from";
+    EXPECT_LE(contact->normal.dot(s.displacement), 1e-9 * s.displacement.norm())
+        << which << ": hit something it moves away from";
   }
   return n_hits;
 }
@@ -297,14 +318,14 @@ TEST(SweptSphereOracle, FarFromTheOriginAndAtEveryScale) {
 std::vector<Simplex<3>> make_soup(Cases& cases) {
   std::vector<Simplex<3>> soup;
   for (int k = 0; k < 6; ++k) soup.push_back(cases.triangle());
-  soup.push_back(soup[0]);                                 // a duplicate
-  soup.push_back({soup[1][1], soup[1][0], soup[1][2]});    // the same from behind
+  soup.push_back(soup[0]);                               // a duplicate
+  soup.push_back({soup[1][1], soup[1][0], soup[1][2]});  // the same from behind
   const Vec3 a = cases.point(), b = cases.point(), c = cases.point(), d = cases.point();
   const Vec3 middle = 0.5 * (a + b);
-  soup.push_back({a, b, c});       // a T-junction: two triangles meet the side of one, in the middle of it
+  soup.push_back({a, b, c});  // a T-junction: two triangles meet the side of one, in the middle of it
   soup.push_back({a, middle, d});
   soup.push_back({middle, b, d});
-  soup.push_back({a, c, d});       // and a concave corner
+  soup.push_back({a, c, d});  // and a concave corner
   return soup;
 }
 
@@ -322,7 +343,8 @@ TEST(SweptSphereOracle, EarliestHitInASoup) {
       bvh.find_near(s.centre, s.radius + s.displacement.norm(), found);
       double time = std::numeric_limits<double>::infinity();
       for (const std::uint32_t f : found)
-        if (const auto contact = sweep_sphere<3>(s.centre, s.displacement, s.radius, soup[f])) time = std::min(time, contact->time);
+        if (const auto contact = sweep_sphere<3>(s.centre, s.displacement, s.radius, soup[f]))
+          time = std::min(time, contact->time);
       n_hits += time <= 1.0;
 
       // Every triangle, near or not.
@@ -332,10 +354,12 @@ TEST(SweptSphereOracle, EarliestHitInASoup) {
       for (const Simplex<3>& t : soup) {
         const Passing<long double> passing(s.centre, s.displacement, t);
         earliest = std::min(earliest, oracle_time<long double>(passing, static_cast<long double>(s.radius) + delta));
-        latest = std::min(latest, oracle_time<long double>(passing, std::max(static_cast<long double>(s.radius) - delta, 0.0L)));
+        latest = std::min(
+            latest, oracle_time<long double>(passing, std::max(static_cast<long double>(s.radius) - delta, 0.0L)));
         const auto start = static_cast<double>(passing.distance2(0));
         touches = touches || (start <= s.radius * s.radius && passing.starts_along(delta / std::sqrt(start)));
-        touches = touches || (start <= std::pow(s.radius + delta, 2) && start >= std::pow(std::max(s.radius - delta, 0.0), 2));
+        touches = touches ||
+                  (start <= std::pow(s.radius + delta, 2) && start >= std::pow(std::max(s.radius - delta, 0.0), 2));
       }
       if (touches) continue;  // what touches at the start may be taken either way; OneTriangle looks into it
       ASSERT_LE(time, latest + 1e-15) << "soup " << k << " trial " << trial;
