@@ -8,7 +8,7 @@ namespace smelt {
 namespace {
 
 constexpr double skin_over_reach = 1e-3;
-constexpr int n_passes = 4, n_sweeps = 30;
+constexpr int n_passes = 4, n_sweeps = 30, n_stops = 20;
 
 /// A corner of body `a` at a facet of obstacle `b`.
 template <int Dim>
@@ -16,9 +16,12 @@ struct Contact {
   std::size_t a, b, corner;
   Vec<Dim> at;      ///< the corner [m]
   Vec<Dim> normal;  ///< towards the body
-  double target;    ///< least normal velocity, relative [m/s]
+  double restitution;   ///< share of the impulse that stops it that is given back; of what does not approach, 0
+  double target;        ///< least normal velocity while it is stopped, relative [m/s]
   Vec<Dim> slide;   ///< tangential velocity to end with, relative [m/s]
+  bool slippery;        ///< without friction
   double pushed = 0.0;  ///< normal impulse so far [kg m/s]
+  bool returned = false;
 };
 
 template <int Dim>
@@ -87,37 +90,53 @@ bool find_contacts(const std::vector<PlacedObstacle<Dim>>& placed, std::size_t a
     const ContactResponse &ours = body.obstacle.response, &theirs = other.obstacle.response;
     const Vec<Dim> relative = velocity_of(body, at, normal) - velocity_of(other, at, normal);
     const double approach = relative.dot(normal);
+    const double restitution = approach < 0.0 ? std::max(ours.restitution, theirs.restitution) : 0.0;
     // What does not bounce comes to rest at the skin, not before.
-    const double bounce = -std::max(ours.restitution, theirs.restitution) * approach;
-    contacts.push_back({a, b, k, at, normal, bounce > 0.0 ? bounce : -gap / dt,
-                        std::min(ours.friction, theirs.friction) * (relative - approach * normal)});
+    contacts.push_back({a, b, k, at, normal, restitution, restitution > 0.0 ? 0.0 : -gap / dt,
+                        std::min(ours.friction, theirs.friction) * (relative - approach * normal),
+                        std::min(ours.friction, theirs.friction) == 1.0});
   }
   return contacts.size() != before;
+}
+
+template <int Dim>
+void push(std::vector<PlacedObstacle<Dim>>& placed, const Contact<Dim>& c, const Vec<Dim>& impulse) {
+  placed[c.a].body->strike(c.at, impulse);
+  if (placed[c.b].body) placed[c.b].body->strike(c.at, -impulse);
 }
 
 /// One sweep of impulses over all contacts, normal and then tangential.
 template <int Dim>
 void sweep_impulses(std::vector<PlacedObstacle<Dim>>& placed, std::vector<Contact<Dim>>& contacts) {
-  const auto push = [&](const Contact<Dim>& c, const Vec<Dim>& impulse) {
-    placed[c.a].body->strike(c.at, impulse);
-    if (placed[c.b].body) placed[c.b].body->strike(c.at, -impulse);
-  };
   const auto relative_velocity = [&](const Contact<Dim>& c) -> Vec<Dim> {
     return velocity_of(placed[c.a], c.at, c.normal) - velocity_of(placed[c.b], c.at, c.normal);
   };
   for (Contact<Dim>& c : contacts) {
+    if (c.returned) continue;
     const double normal_speed = relative_velocity(c).dot(c.normal);
     const double compliance = compliance_of(placed[c.a], c.at, c.normal) + compliance_of(placed[c.b], c.at, c.normal);
     const double pushed = std::max(0.0, c.pushed + (c.target - normal_speed) / compliance);
-    push(c, (pushed - c.pushed) * c.normal);
+    push<Dim>(placed, c, (pushed - c.pushed) * c.normal);
     c.pushed = pushed;
     if (pushed == 0.0) continue;
     const Vec<Dim> relative = relative_velocity(c);
-    const Vec<Dim> excess = relative - relative.dot(c.normal) * c.normal - c.slide;
+    const Vec<Dim> tangential = relative - relative.dot(c.normal) * c.normal, excess = tangential - c.slide;
     const double speed = excess.norm();
-    if (speed == 0.0) continue;
+    // Friction slows down and never speeds up; without any, the blow alone changes how they slide.
+    if (c.slippery || excess.dot(tangential) <= 0.0) continue;
     const Vec<Dim> along = excess / speed;
-    push(c, -speed / (compliance_of(placed[c.a], c.at, along) + compliance_of(placed[c.b], c.at, along)) * along);
+    push<Dim>(placed, c, -speed / (compliance_of(placed[c.a], c.at, along) + compliance_of(placed[c.b], c.at, along)) * along);
+  }
+}
+
+/// Gives back the impulses that stopped what bounces, by Poisson's hypothesis: with several contacts at once, returning each one's normal
+/// velocity could gain energy, and this cannot.
+template <int Dim>
+void return_impulses(std::vector<PlacedObstacle<Dim>>& placed, std::vector<Contact<Dim>>& contacts) {
+  for (Contact<Dim>& c : contacts) {
+    if (c.returned || c.restitution == 0.0) continue;
+    push<Dim>(placed, c, c.restitution * c.pushed * c.normal);
+    c.returned = true;
   }
 }
 
@@ -162,13 +181,15 @@ void move_bodies(std::vector<PlacedObstacle<Dim>>& placed, double dt) {
     for_each_pair([&](std::size_t a, std::size_t b) { more = find_contacts(placed, a, b, dt, contacts) || more; });
     if (!more) break;
     for (int k = 0; k < n_sweeps; ++k) sweep_impulses(placed, contacts);
+    return_impulses(placed, contacts);
     set_ends();
   }
-  // What the impulses have not held stops where it is: the pair that meets first, then the next.
-  for (std::size_t k = 0; !contacts.empty() && k < placed.size(); ++k) {
+  // What the impulses have not held stops where it is: the pair that meets first, then the next. The way to an earlier end of a body that turns
+  // is another one, so all are looked at again; what has found no end without a passage stays where it began.
+  for (int pass = 0; !contacts.empty() && pass <= n_stops; ++pass) {
     bool stopped = false;
     for_each_pair([&](std::size_t a, std::size_t b) {
-      const double share = first_passage(placed, a, b);
+      const double share = pass < n_stops ? first_passage(placed, a, b) : first_passage(placed, a, b) < 1.0 ? 0.0 : 1.0;
       if (share >= 1.0) return;
       stop_at(placed[a], share);
       if (placed[b].body) stop_at(placed[b], share);

@@ -10,7 +10,7 @@
 namespace smelt {
 
 /// Changes the velocities of the rigid bodies among `placed`, and sets where each ends after a step of `dt` [s], so that no corner passes a
-/// facet. At a contact the bodies' normal velocity is stopped, or returned by the larger restitution of the two; of the tangential one the
+/// facet. At a contact the bodies' normal velocity is stopped, and the larger restitution of the two gives that share of the impulse back; of the tangential one the
 /// smaller friction's share is kept. Both act as impulses, by sweeps over the contacts in a fixed order; what they have not resolved stops a body
 /// at the contact for the rest of the step. `begin` and `end` of what moves by itself must be set.
 template <int Dim>

@@ -117,7 +117,8 @@ std::string make_gltf() {
       {"bufferView": 0, "componentType": 5126, "count": 8, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 1]},
       {"bufferView": 1, "componentType": 5123, "count": 36, "type": "SCALAR"}],
     "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 96}, {"buffer": 0, "byteOffset": 96, "byteLength": 72}],
-    "buffers": [{"uri": "import_box.bin", "byteLength": 168}]})";
+    "buffers": [{"uri": ")" +
+         temporary("box.bin").filename().string() + R"(", "byteLength": 168}]})";
 }
 
 TEST(MeshImport, AppliesTheNodesOfGltfAndJoinsItsMeshes) {

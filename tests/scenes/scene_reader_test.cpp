@@ -114,7 +114,7 @@ TEST(SceneReader, KeyframesAreRisingAndMoreThanOne) {
   const std::string collider = replaced(good_scene, "mesh = \"ground\"", "mesh = \"assets/sphere.obj\"\n");
   const auto keys = [&](const std::string& list) { return collider + "keyframes = [" + list + "]\n"; };
   EXPECT_EQ(error_of(keys("{ time_s = 0.0 }, { time_s = 1.0, translate_m = [0, 1, 0], rotate_deg = [0, 0, 170] }")),
-            "");
+            "no error");
   expect_error(keys("{ time_s = 1.0 }, { time_s = 0.5 }"), ":23: collider.0.keyframes.1.time_s",
                "must be later than the keyframe before, at 1 s, is 0.5; put the keyframes in order");
   expect_error(keys("{ time_s = 1.0 }"), ":23: collider.0.keyframes", "one keyframe moves nothing: give two or more");
@@ -133,7 +133,7 @@ TEST(SceneReader, KeyframesAreRisingAndMoreThanOne) {
 
 TEST(SceneReader, RigidBodies) {
   const std::string collider = replaced(good_scene, "mesh = \"ground\"", "mesh = \"assets/sphere.obj\"\n");
-  EXPECT_EQ(error_of(collider + "density_kg_m3 = 7800.0\nvelocity_m_s = [1, 0, 0]\n"), "");
+  EXPECT_EQ(error_of(collider + "density_kg_m3 = 7800.0\nvelocity_m_s = [1, 0, 0]\n"), "no error");
   expect_error(collider + "mass_kg = 0.0\n", ":23: collider.0.mass_kg", "above 0, is 0");
   expect_error(collider + "mass_kg = 1.0\ndensity_kg_m3 = 7800.0\n", ":24: collider.0.density_kg_m3", "not both");
   expect_error(collider + "mass_kg = 1.0\nkeyframes = [{ time_s = 0.0 }, { time_s = 1.0 }]\n", "collider.0.keyframes",
