@@ -302,31 +302,6 @@ TEST(Emitter, SameBytesOnOneAndTwoThreads) {
   EXPECT_EQ(positions[0], positions[1]);
 }
 
-// No conduction, so that the vent itself gives and takes nothing: what has come in is what is there and what the surface has lost.
-TEST(Emitter, EnthalpyComesInWithTheParticles) {
-  auto parameters = make_parameters<3>();
-  Emitter<3> vent = make_vent();
-  vent.temperature = 1400.0;
-  parameters.emitters = {vent};
-  parameters.ambient = Ambient{300.0, 1000.0};
-  Material m = syrup();
-  m.heat = HeatProperties{0.0, 1100.0, 1300.0};
-  m.heat->specific_heat = 1000.0;
-  m.heat->latent_heat = 4e5;
-  m.heat->emissivity = 0.9;
-  Solver<3, double> solver(parameters, {m}, {}, {});
-  run(solver, 0.0, 0.4, 0.4, see_nothing);
-  const std::size_t n = solver.particles().size();
-  ASSERT_GT(n, 50u);
-  ASSERT_EQ(solver.particles().enthalpy.size(), n);
-  double held = 0.0;
-  for (std::size_t i = 0; i < n; ++i) held += solver.mass(i) * solver.enthalpy(i);
-  const double lost = solver.heat_ledger().radiated + solver.heat_ledger().convected;
-  EXPECT_GT(lost, 0.0);
-  const double came = static_cast<double>(n) * solver.mass(0) * (1000.0 * 300.0 + 4e5);
-  EXPECT_NEAR(held, came - lost, 1e-6 * lost);
-}
-
 // Two materials, each with its own account.
 TEST(Outflow, CountsWhatItTakesOfEachMaterial) {
   auto parameters = make_parameters<3>();
