@@ -8,6 +8,7 @@
 
 #include "core/sph/pair_records-inl.h"
 #include "core/sph/pair_sums.h"
+#include "core/sph/particles.h"
 
 #include <hwy/highway.h>
 
@@ -17,12 +18,13 @@ HWY_BEFORE_NAMESPACE();
 namespace smelt {
 namespace HWY_NAMESPACE {
 
-template <typename PairKernel, int Dim, typename Real, bool with_stress, bool with_heat, bool with_xsph>
+template <typename PairKernel, int Dim, typename Real, bool with_stress, HeatTerms heat_terms, bool with_xsph>
 void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, double h, std::size_t begin,
                std::size_t end, RateSums<Dim, Real>* sums) {
   const Tag<Real> d;
   const PairKernel kernel(h);
   constexpr std::size_t lanes = pair_lanes<Real>;
+  constexpr bool with_heat = heat_terms != HeatTerms::none;
   using Fields = PairFields<Dim, Real>;
   [[maybe_unused]] const auto least_balance = hn::Set(d, Real(0.2)), most_balance = hn::Set(d, Real(1.8));
   [[maybe_unused]] const auto one = hn::Set(d, Real(1)), least_sum = hn::Set(d, Real(1e-30));
@@ -40,7 +42,7 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
     for (auto& x : xsph) x = hn::Zero(d);
 
     const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
-    const auto density_i = hn::Set(d, motion_i[Fields::density_at]);
+    [[maybe_unused]] const auto inverse_density_i = hn::Set(d, 1 / motion_i[Fields::density_at]);
     [[maybe_unused]] const Real* heat_i = nullptr;
     if constexpr (with_heat) heat_i = fields.heat.data() + i * Fields::heat_stride;
     const std::int32_t* row = lists.index.data() + lists.begin[i];
@@ -80,14 +82,18 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
         const auto imbalance = hn::NegMulAdd(volume_f, along_j, volume_f);
         for (int a = 0; a < Dim; ++a) heat_imbalance[a] = hn::MulAdd(imbalance, x_ij[a], heat_imbalance[a]);
         const auto t_ij = hn::Sub(hn::Set(d, heat_i[0]), heat_j[0]);
-        const auto l_j = heat_j[Fields::conductivity_at];
-        const auto l_sum = hn::Max(hn::Add(hn::Set(d, heat_i[Fields::conductivity_at]), l_j), least_sum);
-        const auto trace_sum = hn::Add(hn::Set(d, heat_i[Fields::moment_trace_at]), heat_j[Fields::moment_trace_at]);
-        heat = hn::Add(hn::Div(hn::Mul(hn::Mul(balanced_f, t_ij), l_j), hn::Mul(l_sum, trace_sum)), heat);
+        const auto inverse_trace = hn::Add(hn::Set(d, heat_i[Fields::inverse_trace_at]), heat_j[Fields::inverse_trace_at]);
+        auto conducted = hn::Mul(hn::Mul(balanced_f, t_ij), inverse_trace);
+        if constexpr (heat_terms == HeatTerms::mixed) {
+          const auto l_j = heat_j[Fields::conductivity_at];
+          const auto l_sum = hn::Max(hn::Add(hn::Set(d, heat_i[Fields::conductivity_at]), l_j), least_sum);
+          conducted = hn::Mul(conducted, hn::Div(hn::Add(l_j, l_j), l_sum));
+        }
+        heat = hn::Add(conducted, heat);
       }
       if constexpr (with_xsph) {
-        const auto mass = hn::Mul(pair.volume, pair.density);
-        const auto w = hn::Div(hn::Mul(mass, kernel.value(r2)), hn::Add(density_i, pair.density));
+        const auto mass_ratio = hn::MulAdd(hn::Mul(pair.volume, pair.density), inverse_density_i, pair.volume);
+        const auto w = hn::Mul(mass_ratio, kernel.value(r2));
         for (int a = 0; a < Dim; ++a) xsph[a] = hn::NegMulAdd(v_ij[a], w, xsph[a]);
       }
     }
@@ -99,13 +105,13 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
     if constexpr (with_stress || with_heat)
       for (int a = 0; a < Dim * (Dim + 1) / 2; ++a) out.position_moment[a] = sum_lanes<Real>(position_moment[a]);
     if constexpr (with_heat) {
-      // Twice, and the halves of both means.
-      out.heat = 8 * sum_lanes<Real>(heat);
+      // Twice, and the half of a mean.
+      out.heat = sum_lanes<Real>(heat);
       out.moment_trace = sum_lanes<Real>(moment_trace) / Dim;
       for (int a = 0; a < Dim; ++a) out.heat_imbalance[a] = sum_lanes<Real>(heat_imbalance[a]);
     }
     if constexpr (with_xsph)
-      for (int a = 0; a < Dim; ++a) out.xsph[a] = 2 * sum_lanes<Real>(xsph[a]);
+      for (int a = 0; a < Dim; ++a) out.xsph[a] = sum_lanes<Real>(xsph[a]) / 2;
   }
 }
 
@@ -122,9 +128,12 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
   // Pi_ij = -alpha c mu_ij / (0.5 (rho_i + rho_j)), mu_ij = h v_ij.x_ij / (r^2 + 0.01 h^2) where they approach.
   const auto damping = hn::Set(d, static_cast<Real>(2.0 * parameters.artificial_viscosity * parameters.sound_speed * h));
   [[maybe_unused]] const auto hourglass = hn::Set(d, static_cast<Real>(2 * (Dim + 2)));
+  const auto one = hn::Set(d, Real(1));
   for (std::size_t i = begin; i < end; ++i) {
     Simd<Real> sum[Dim];
+    [[maybe_unused]] Simd<Real> way[Dim];
     for (auto& s : sum) s = hn::Zero(d);
+    for (auto& s : way) s = hn::Zero(d);
     const Real* force_i = fields.force.data() + i * force_stride;
     const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
     const auto density_i = hn::Set(d, motion_i[Fields::density_at]);
@@ -140,7 +149,10 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
       const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(r2));
       const auto v_x = dot<Dim, Real>(v_ij, x_ij);
       const auto approach = hn::Min(v_x, hn::Zero(d));
-      const auto pi = hn::Div(hn::Mul(damping, approach), hn::Mul(hn::Add(r2, soft), hn::Add(density_i, pair.density)));
+      // One division for both: they and the square root are what is slow here.
+      const auto density_sum = hn::Add(density_i, pair.density);
+      const auto inverse = hn::Div(one, hn::Mul(hn::Add(r2, soft), density_sum));
+      const auto pi = hn::Mul(hn::Mul(damping, approach), inverse);
       const auto pressure = hn::Add(hn::Set(d, force_i[0]), force[0]);
       // -m_j (pressure + Pi_ij) F, with Pi_ij = -pi and m_j = V_j rho_j.
       const auto isotropic = hn::Mul(hn::Mul(pair.density, volume_f), hn::Sub(pi, pressure));
@@ -149,27 +161,30 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
         // m_j/(rho_i rho_j) = V_j/rho_i.
         const auto scale = hn::Mul(volume_f, inverse_density_i);
         for (int a = 0; a < Dim; ++a) {
-          auto traction = hn::Zero(d);
-          for (int b = 0; b < Dim; ++b) {
-            const int component = 1 + a * Dim + b;
-            traction = hn::MulAdd(hn::Add(hn::Set(d, force_i[component]), force[component]), x_ij[b], traction);
-          }
+          auto traction = hn::Mul(force[1 + a * Dim], x_ij[0]);
+          for (int b = 1; b < Dim; ++b) traction = hn::MulAdd(force[1 + a * Dim + b], x_ij[b], traction);
           sum[a] = hn::MulAdd(scale, traction, sum[a]);
+          // The particle's own stress is the same in all of its pairs.
+          way[a] = hn::MulAdd(scale, x_ij[a], way[a]);
         }
         if constexpr (with_hourglass) {
-          const auto pair_sum = [&](int field) {
-            return hn::Add(hn::Set(d, force_i[Fields::hourglass_at + field]), force[Fields::hourglass_at + field]);
-          };
-          auto unseen = hn::Mul(pair_sum(0), v_x);
-          for (int b = 0; b < Dim; ++b)
-            for (int a = 0; a <= b; ++a)
-              unseen = hn::NegMulAdd(hn::Mul(pair_sum(1 + (a == b ? a : Dim - 1 + a + b)), x_ij[a]), x_ij[b], unseen);
-          const auto weight = hn::Div(hn::Mul(hn::Mul(scale, hourglass), unseen), hn::Add(r2, soft));
+          const auto pair_sum = [&](int field) HWY_ATTR { return hn::Add(hn::Set(d, force_i[field]), force[field]); };
+          auto unseen = hn::Mul(pair_sum(Fields::hourglass_at), v_x);
+          for (int m = 0; m < n_symmetric<Dim>; ++m) {
+            const auto [a, b] = symmetric_entry<Dim>(m);
+            unseen = hn::NegMulAdd(pair_sum(Fields::hourglass_at + 1 + m), hn::Mul(x_ij[a], x_ij[b]), unseen);
+          }
+          const auto weight = hn::Mul(hn::Mul(hn::Mul(scale, hourglass), unseen), hn::Mul(inverse, density_sum));
           for (int a = 0; a < Dim; ++a) sum[a] = hn::MulAdd(weight, x_ij[a], sum[a]);
         }
       }
     }
     for (int a = 0; a < Dim; ++a) acceleration[i][a] = sum_lanes<Real>(sum[a]);
+    if constexpr (with_stress)
+      for (int b = 0; b < Dim; ++b) {
+        const Real way_b = sum_lanes<Real>(way[b]);
+        for (int a = 0; a < Dim; ++a) acceleration[i][a] += force_i[1 + a * Dim + b] * way_b;
+      }
   }
 }
 
@@ -253,7 +268,11 @@ void select_rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists&
     terms.xsph ? run(stress, heat, std::true_type{}) : run(stress, heat, std::false_type{});
   };
   const auto with_heat = [&](auto stress) HWY_ATTR {
-    terms.heat ? with_xsph(stress, std::true_type{}) : with_xsph(stress, std::false_type{});
+    switch (terms.heat) {
+      case HeatTerms::none: return with_xsph(stress, std::integral_constant<HeatTerms, HeatTerms::none>{});
+      case HeatTerms::uniform: return with_xsph(stress, std::integral_constant<HeatTerms, HeatTerms::uniform>{});
+      case HeatTerms::mixed: return with_xsph(stress, std::integral_constant<HeatTerms, HeatTerms::mixed>{});
+    }
   };
   terms.stress ? with_heat(std::true_type{}) : with_heat(std::false_type{});
 }

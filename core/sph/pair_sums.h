@@ -9,17 +9,27 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace smelt {
+
+/// Conduction in the pair loops.
+enum class HeatTerms : std::uint8_t {
+  none,
+  uniform,  ///< all particles conduct equally well
+  mixed     ///< conductivities differ: their harmonic mean is taken pair by pair
+};
 
 /// What a scene asks of the pair loops; an unused term costs neither time nor memory.
 struct PairTerms {
   KernelType kernel = KernelType::cubic_spline;
   bool stress = false;
   bool hourglass = false;  ///< hourglass control, of a stress
-  bool heat = false;
+  HeatTerms heat = HeatTerms::none;
   bool xsph = false;
+
+  bool has_heat() const { return heat != HeatTerms::none; }
 };
 
 /// Fields of a record, padded to whole groups of four: a vector of neighbours is loaded group by group and transposed, which costs
@@ -44,9 +54,9 @@ struct PairFields {
   static constexpr int hourglass_at = 1 + Dim * Dim;
   static constexpr int force_stride(const PairTerms& terms) { return force_stride(terms.stress, terms.hourglass); }
   /// Temperature above a reference [K], conductivity over c_p relative to the scene's largest [-], and of the pass
-  /// before the moment trace theta [-] and the balance lambda [1/m] (core/sph/heat_balance.h).
+  /// before 1/theta, theta the moment trace [-], and the balance lambda [1/m] (core/sph/heat_balance.h).
   static constexpr int n_heat_fields = 3 + Dim, heat_stride = padded_record(n_heat_fields);
-  static constexpr int conductivity_at = 1, moment_trace_at = 2, balance_at = 3;
+  static constexpr int conductivity_at = 1, inverse_trace_at = 2, balance_at = 3;
 
   std::vector<Real> motion;       ///< n records of motion_stride
   std::vector<Real> force;        ///< n records of force_stride
@@ -62,13 +72,13 @@ struct RateSums {
   std::array<Real, Dim*(Dim + 1) / 2>
       position_moment;  ///< sum V_j (x_j - x_i) (x) grad_w_ij  [Bonet & Lok 1999]; of stress or heat
   /// 2 sum V_j (T_i - T_j) F b_ij / theta_ij, finite at r = 0  [P 6-9, corrected], with the balance b_ij = 1 +
-  /// x_ij.(lambda_i - lambda_j), held within [0.2, 1.8], and the mean theta_ij of the moment traces
+  /// x_ij.(lambda_i - lambda_j), held within [0.2, 1.8], and 1/theta_ij the mean of the particles' 1/theta
   /// (core/sph/heat_balance.h); where conductivities l differ, each pair times 2 l_j/(l_i + l_j), so that l_i times it
   /// has their harmonic mean  [Cleary & Monaghan 1999]
   Real heat;
   Real moment_trace;                            ///< theta = - sum V_j r^2 F b_ij / Dim
   std::array<Real, Dim> heat_imbalance;         ///< sum V_j F x_ij (1 - x_ij.lambda_j) [1/m]
-  std::array<Real, Dim> xsph;                   ///< sum 2 m_j/(rho_i + rho_j) (v_j - v_i) W_ij  [P 6-16]
+  std::array<Real, Dim> xsph;                   ///< sum m_j (1/rho_i + 1/rho_j)/2 (v_j - v_i) W_ij  [P 6-16, whose 2/(rho_i + rho_j) takes a division a pair and differs by (rho_i - rho_j)^2]
 };
 
 /// Neighbours in one vector: rows of the neighbour lists are padded to a multiple of it. The same on every machine.

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace smelt {
@@ -21,6 +22,13 @@ template <int Dim>
 constexpr int symmetric_index(int row, int column) {
   if (row == column) return row;
   return Dim - 1 + row + column;  // xy = Dim, xz = Dim + 1, yz = Dim + 2
+}
+
+/// Row and column of entry `k`, row <= column.
+template <int Dim>
+constexpr std::pair<int, int> symmetric_entry(int k) {
+  if (k < Dim) return {k, k};
+  return k - Dim < 2 ? std::pair(0, k - Dim + 1) : std::pair(1, 2);
 }
 
 template <int Dim>

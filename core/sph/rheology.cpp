@@ -30,7 +30,8 @@ StressAndSlope shear_stress_and_slope(const FlowCurve& curve, double y) {
   const double viscous_slope = curve.index * viscous / y;
   if (curve.yield_stress == 0.0) return {viscous, viscous_slope};
   const double a = curve.rest_viscosity / curve.yield_stress;
-  const double rise = -std::expm1(-a * y);
+  // Beyond 40 the exponential is less than a rounding of 1.
+  const double rise = a * y > 40.0 ? 1.0 : -std::expm1(-a * y);
   return {rise * plastic, rise * viscous_slope + a * (1.0 - rise) * plastic};
 }
 

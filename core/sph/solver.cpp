@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <numeric>
 #include <utility>
 
 namespace smelt {
@@ -27,6 +26,14 @@ void reorder(std::vector<T>& values, const std::vector<std::int32_t>& order) {
 
 bool inviscid(const Rheology& r) {
   return is_zero(r.yield_stress) && is_zero(r.consistency);
+}
+
+/// Whether materials conduct, and whether all of them equally well.
+HeatTerms heat_terms(const std::vector<Material>& materials) {
+  const auto conducts = [](const Material& m) { return m.heat.has_value(); };
+  if (std::none_of(materials.begin(), materials.end(), conducts)) return HeatTerms::none;
+  const auto like_first = [&](const Material& m) { return m.heat && materials.front().heat && conductivity(m) == conductivity(materials.front()); };
+  return std::all_of(materials.begin(), materials.end(), like_first) ? HeatTerms::uniform : HeatTerms::mixed;
 }
 
 /// Radius of the sphere (disc, segment) of a particle's volume  [P 5-11].
@@ -56,8 +63,8 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
   terms_.pair.kernel = parameters_.kernel;
   for (const Material& m : materials_) {
     if (!inviscid(m.rheology)) terms_.pair.stress = true;
-    if (m.heat) terms_.pair.heat = true;
   }
+  terms_.pair.heat = heat_terms(materials_);
   terms_.pair.xsph = parameters_.xsph > 0.0;
   for (int a = 0; a < Dim; ++a) terms_.periodic = terms_.periodic || is_periodic(parameters_.period, a);
   check_period<Dim>(parameters_.period, list_reach());
@@ -68,14 +75,14 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
     fail("simulation: density diffusion goes with the continuity equation; a density that is a sum has nothing to diffuse (set it to 0)");
   if (parameters_.corrected_divergence && (!terms_.pair.stress || parameters_.density != DensityForm::continuity))
     fail("simulation: the corrected divergence needs a material with a viscosity, and the continuity equation for the density");
-  CHECK_EQ(particles_.temperature.size(), terms_.pair.heat ? n : 0);
+  CHECK_EQ(particles_.temperature.size(), terms_.pair.has_heat() ? n : 0);
   set_up_heat();
   if (terms_.pair.stress) {
     particles_.stress.resize(n, Symmetric<Dim>::Zero());
     particles_.viscosity.resize(n, 0.0F);
   }
   CHECK_EQ(particles_.internal_energy.size(), terms_.gas ? n : 0);
-  if (terms_.gas && (terms_.pair.stress || terms_.pair.heat)) fail("simulation: an ideal gas has no viscosity and conducts no heat");
+  if (terms_.gas && (terms_.pair.stress || terms_.pair.has_heat())) fail("simulation: an ideal gas has no viscosity and conducts no heat");
   if (terms_.gas && !(parameters_.equation_of_state.adiabatic_index > 1.0))
     fail("simulation: the adiabatic index must be > 1, is {}", parameters_.equation_of_state.adiabatic_index);
   if (!terms_.gas && parameters_.quadratic_artificial_viscosity != 0.0)
@@ -98,7 +105,7 @@ void Solver<Dim, Real>::resize_derived() {
   force_sums_.resize(n);
   rates_.resize(n);
   if (terms_.gas) energy_rate_.resize(n);
-  if (terms_.pair.heat) heat_balance_.resize(n);
+  if (terms_.pair.has_heat()) heat_balance_.resize(n);
   if (terms_.pair.xsph) transport_.resize(n, Vec<Dim>::Zero());
   if (terms_.pair.xsph) xsph_.resize(n, Vec<Dim>::Zero());
   if (walls_ || (terms_.diffusion && terms_.pair.stress)) {
@@ -114,13 +121,11 @@ void Solver<Dim, Real>::resize_derived() {
 template <int Dim, typename Real>
 void Solver<Dim, Real>::prepare(double time) {
   colliders_.place_at(time);
-  if (terms_.pair.heat) heat_balance_.assign(particles_.size(), {});
+  if (terms_.pair.has_heat()) heat_balance_.assign(particles_.size(), {});
   std::fill(clearance_.begin(), clearance_.end(), 0.0);
+  if (walls_) walls_->reset(particles_.size());
   search_neighbours();
-  if (walls_) {
-    find_walls();
-    walls_->update(colliders_, particles_.position);
-  }
+  if (walls_) walls_->update(colliders_, particles_.position);
   if (terms_.exchange) find_free_surface();
   heat_ledger_ = {};
   pack_motion(particles_.velocity);
@@ -144,31 +149,37 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
 
   // Leap-frog: half a kick, a whole drift, half a kick.
   kick(0.5 * dt);
+  end_stage(StepStage::kick);
   colliders_.begin_step(time, dt);
   drift(dt);
-  if (colliders_.end_step()) travelled_ = travelled_at_walls_ = std::numeric_limits<double>::infinity();  // the lists name an obstacle that is not there
+  if (colliders_.end_step()) {
+    travelled_ = std::numeric_limits<double>::infinity();
+    if (walls_) walls_->reset(particles_.size());  // they saw an obstacle that is not there
+  }
   if (colliders_.has_bodies()) strike_bodies();
+  end_stage(StepStage::drift);
 
   const bool searched = 2.0 * travelled_ > parameters_.skin * parameters_.smoothing_length;
   if (searched) search_neighbours();
-  if (walls_) {
-    // Lists of walls last longer than those of neighbours, whatever order the particles are in.
-    if (travelled_at_walls_ > wall_slack()) find_walls();
-    walls_->update(colliders_, particles_.position);
-  }
+  end_stage(StepStage::search);
+  if (walls_) walls_->update(colliders_, particles_.position);
   if (searched && terms_.exchange) find_free_surface();
+  end_stage(StepStage::wall_sums);
 
   // Density, heat and stress change with the velocity that moved the particles.
   pack_motion(terms_.pair.xsph ? transport_ : particles_.velocity);
   sum_densities();
   evaluate_rates();
-  if (terms_.pair.heat) integrate_heat(dt, time + dt);
+  if (terms_.pair.has_heat()) integrate_heat(dt, time + dt);
   integrate_rates(dt);
+  end_stage(StepStage::rheology);
   evaluate_forces();
   kick(0.5 * dt);
+  end_stage(StepStage::kick);
 
   exchange_particles(time + dt);
   check_state(time + dt);
+  end_stage(StepStage::watch);
   return step;
 }
 
@@ -196,14 +207,12 @@ void Solver<Dim, Real>::search_neighbours() {
   for (const auto& x : particles_.position) bounds.extend(x);
   origin_ = bounds.centre();
   travelled_ = 0.0;
-  if (walls_) walls_->reorder(order);
-  if (terms_.periodic) travelled_at_walls_ = std::numeric_limits<double>::infinity();  // particles came from across the box
-}
-
-template <int Dim, typename Real>
-void Solver<Dim, Real>::find_walls() {
-  walls_->find(colliders_, particles_.position, wall_slack());
-  travelled_at_walls_ = 0.0;
+  ++n_searches_;
+  if (!walls_) return;
+  if (terms_.periodic)
+    walls_->reset(particles_.size());  // particles came from across the box
+  else
+    walls_->reorder(order);
 }
 
 // ------------------------------------------------------------------------------------------------------ rates and forces
@@ -241,13 +250,17 @@ void Solver<Dim, Real>::set_summed_densities(bool normalise) {
 
 template <int Dim, typename Real>
 void Solver<Dim, Real>::evaluate_rates() {
+  end_stage(StepStage::rates);  // their records
   if (walls_ || terms_.diffusion) evaluate_pressure_gradients();
+  end_stage(StepStage::wall_rates);
   parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
     compute_rate_sums<Dim, Real>(fields_, lists_, terms_.pair, parameters_.smoothing_length, begin, end, rates_.data());
   });
   if (terms_.diffusion) apply_density_diffusion();
+  end_stage(StepStage::rates);
   if (walls_)
     parallel_for_each(walls_->neighbours().size(), [&](std::size_t k) { apply_wall_rates(walls_->neighbours()[k]); });
+  end_stage(StepStage::wall_rates);
 }
 
 /// Near walls; everywhere where density diffuses in a fluid with a stress (pack_gradients).
@@ -287,9 +300,9 @@ void Solver<Dim, Real>::apply_wall_rates(const WallNeighbour<Dim>& wall) {
   const auto i = static_cast<std::size_t>(wall.particle);
   Vec<Dim> velocity;  // the one that the pair sums were made with
   for (int a = 0; a < Dim; ++a) velocity[a] = fields_.motion[i * Fields::motion_stride + Fields::velocity_at + a];
-  accumulate_wall_rates<Dim, Real>(wall, colliders_, terms_.pair, velocity, particles_.density[i],
-                                   terms_.pair.heat ? particles_.temperature[i] : 0.0,
-                                   terms_.pair.heat ? heat_balance_[i].moment_trace : 1.0, rates_[i]);
+  accumulate_wall_rates<Dim, Real>(wall, colliders_, terms_.pair, velocity, particles_.density[i], material(i).density,
+                                   terms_.pair.has_heat() ? particles_.temperature[i] : 0.0,
+                                   terms_.pair.has_heat() ? heat_balance_[i].moment_trace : 1.0, rates_[i]);
 }
 
 /// With dt = 0 nothing advances, but the stress of a law without memory and the XSPH correction follow from the state.
@@ -299,7 +312,7 @@ void Solver<Dim, Real>::integrate_rates(double dt) {
   match_driven_densities();
   parallel_for_each(particles_.size(), [&](std::size_t i) {
     const RateSums<Dim, Real>& rate = rates_[i];
-    if (terms_.pair.heat) heat_balance_[i] = balance_heat<Dim, Real>(rate);
+    if (terms_.pair.has_heat()) heat_balance_[i] = balance_heat<Dim, Real>(rate);
     Mat<Dim> corrected_stress = Mat<Dim>::Zero();
     if (terms_.pair.stress) corrected_stress = integrate_stress(i, dt);
     if (parameters_.density == DensityForm::continuity && !is_driven(i))
@@ -354,6 +367,7 @@ void Solver<Dim, Real>::evaluate_forces() {
     for (std::size_t i = begin; i < end; ++i)
       for (int a = 0; a < Dim; ++a) acceleration_[i][a] = force_sums_[i][a] + parameters_.gravity[a];
   });
+  end_stage(StepStage::forces);
   if (walls_) {
     const std::size_t n_walled = walls_->neighbours().size();
     if (colliders_.has_bodies()) body_forces_.assign(n_walled * colliders_.placed().size(), Vec<Dim>::Zero());
@@ -364,6 +378,7 @@ void Solver<Dim, Real>::evaluate_forces() {
     parallel_for_each(particles_.size(), [&](std::size_t i) {
       if (is_driven(i)) acceleration_[i].setZero();
     });
+  end_stage(StepStage::wall_forces);
 }
 
 template <int Dim, typename Real>
@@ -416,21 +431,29 @@ void Solver<Dim, Real>::kick(double dt) {
 template <int Dim, typename Real>
 void Solver<Dim, Real>::move_particle(std::size_t i, double radius, double dt, Vec<Dim>& transport,
                                       std::vector<BodyHit<Dim>>* hits) {
-  const double nearer = colliders_.step_way();
-  if (clearance_[i] > colliders_.reach(radius, dt, transport)) {
-    clearance_[i] -= dt * transport.norm() + nearer;
+  const double reach = colliders_.reach(radius, dt, transport);
+  if (clearance_[i] <= reach) clearance_[i] = colliders_.clearance(particles_.position[i], std::max(reach, 16.0 * radius));
+  if (clearance_[i] > reach) {
+    clearance_[i] -= dt * transport.norm() + colliders_.step_way();
     particles_.position[i] += dt * transport;
     return;
   }
-  const bool hit = colliders_.move_sphere(radius, dt, particles_.position[i], transport, particles_.velocity[i], hits);
-  // What hits will hit again.
-  clearance_[i] = hit ? 0.0 : colliders_.clearance(particles_.position[i], 16.0 * radius) - nearer;
+  colliders_.move_sphere(radius, dt, particles_.position[i], transport, particles_.velocity[i], hits);
+  clearance_[i] = 0.0;
 }
 
 template <int Dim, typename Real>
 void Solver<Dim, Real>::drift(double dt) {
   const double radius = particle_radius<Dim>(parameters_.particle_volume);
   const std::size_t n_blocks = (particles_.size() + block_size - 1) / block_size;
+  if (n_blocks == 0) return;
+  // What all particles do together brings none nearer to another. In a periodic box it takes them out of it, though.
+  Vec<Dim> together = Vec<Dim>::Zero();
+  if (!terms_.periodic)
+    together = dt / static_cast<double>(particles_.size()) *
+               deterministic_reduce(
+                   particles_.size(), together, [&](std::size_t i) { return particles_.velocity[i]; },
+                   [](const Vec<Dim>& a, const Vec<Dim>& b) { return Vec<Dim>(a + b); });
   std::vector<double> farthest(n_blocks, 0.0);
   body_hits_.resize(colliders_.has_bodies() ? n_blocks : 0);
   parallel_blocks(
@@ -439,18 +462,15 @@ void Solver<Dim, Real>::drift(double dt) {
         std::vector<ParticleHit<Dim>>* hits = colliders_.has_bodies() ? &body_hits_[block] : nullptr;
         if (hits) hits->clear();
         for (std::size_t i = block * block_size; i < std::min(particles_.size(), (block + 1) * block_size); ++i)
-          farthest[block] = std::max(farthest[block], drift_particle(i, radius, dt, hits));
+          farthest[block] = std::max(farthest[block], (drift_particle(i, radius, dt, hits) - together).norm());
       },
       1);
-  const double way = std::accumulate(farthest.begin(), farthest.end(), 0.0, [](double a, double b) { return std::max(a, b); }) +
-                     colliders_.step_way();
-  travelled_ += way;
-  travelled_at_walls_ += way;
+  travelled_ += *std::max_element(farthest.begin(), farthest.end());
 }
 
-/// Returns how far it goes [m].
+/// Returns its way [m].
 template <int Dim, typename Real>
-double Solver<Dim, Real>::drift_particle(std::size_t i, double radius, double dt, std::vector<ParticleHit<Dim>>* hits) {
+Vec<Dim> Solver<Dim, Real>::drift_particle(std::size_t i, double radius, double dt, std::vector<ParticleHit<Dim>>* hits) {
   Vec<Dim>& velocity = particles_.velocity[i];
   // XSPH moves particles with a smoothed velocity and leaves the velocity itself alone  [Monaghan 1989].
   Vec<Dim> transport = velocity;
@@ -465,7 +485,9 @@ double Solver<Dim, Real>::drift_particle(std::size_t i, double radius, double dt
     for (const BodyHit<Dim>& hit : of_particle) hits->push_back({static_cast<std::int32_t>(i), hit});
   }
   if (terms_.pair.xsph) transport_[i] = transport;
-  return (particles_.position[i] - before).norm();
+  const Vec<Dim> way = particles_.position[i] - before;
+  if (walls_) walls_->travel(i, way.norm());
+  return way;
 }
 
 /// The particles that hit a rigid body took it for infinitely heavy. All the hits of a step together are one inelastic

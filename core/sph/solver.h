@@ -14,6 +14,7 @@
 #include "core/sph/time_step.h"
 #include "core/sph/walls.h"
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -69,6 +70,21 @@ struct SolverTerms {
   bool ledger = false;       ///< specific heats are known, and so energies
 };
 
+/// What a step is made of, for timing.
+enum class StepStage : std::uint8_t {
+  kick,           ///< both halves, and the choice of the step
+  drift,          ///< with the swept collision
+  search,         ///< for neighbours, where it was due
+  wall_sums,      ///< which facets each particle sees, and the integrals over them
+  rates,          ///< the first pass over pairs
+  wall_rates,     ///< what walls add to it, the pressure's gradient near them included
+  rheology,       ///< stress, density and heat advance
+  forces,         ///< the second pass over pairs
+  wall_forces,    ///< what walls add to it
+  watch           ///< particles that come and go, and whether the state is sound
+};
+inline constexpr std::array step_stage_names{"kick", "drift", "search", "wall sums", "rates", "wall rates", "rheology", "forces", "wall forces", "watch"};
+
 /// A particle that hit a rigid body.
 template <int Dim>
 struct ParticleHit {
@@ -94,6 +110,7 @@ class Solver {
   const std::vector<Vec<Dim>>& acceleration() const { return acceleration_; }  ///< [m/s^2], same order
   /// Indices from the number of particles on name periodic images.
   const NeighbourLists& neighbours() const { return lists_; }
+  std::size_t n_searches() const { return n_searches_; }  ///< for neighbours, so far
   const Colliders<Dim>& colliders() const { return colliders_; }
   const SolverParameters<Dim>& parameters() const { return parameters_; }
   const std::vector<Material>& materials() const { return materials_; }
@@ -122,14 +139,17 @@ class Solver {
   /// the time when a value is not finite, a density is beyond reason, a particle leaves the domain, or the time step collapses.
   TimeStep step(double remaining, double time);
 
+  /// `ended` is called in every step at the end of each of its stages; nullptr: nobody is.
+  void observe(std::function<void(StepStage)> ended) { stage_ended_ = std::move(ended); }
+
  private:
+  void end_stage(StepStage stage) const {
+    if (stage_ended_) stage_ended_(stage);
+  }
   /// Of the neighbour lists [m].
   double list_reach() const { return (kernel_kappa(parameters_.kernel) + parameters_.skin) * parameters_.smoothing_length; }
   void search_neighbours();
   void pack_heat(std::size_t i, double largest_conductivity, Real* record) const;
-  void find_walls();
-  /// How far particles may move before the facets near them are looked up anew [m].
-  double wall_slack() const { return 0.25 * parameters_.smoothing_length; }
   void pack_motion(const std::vector<Vec<Dim>>& velocity);
   void pack_gas(std::size_t i, double dt);
   void pack_gradients();
@@ -159,7 +179,7 @@ class Solver {
   void kick(double dt);
   void drift(double dt);
   void move_particle(std::size_t i, double radius, double dt, Vec<Dim>& transport, std::vector<BodyHit<Dim>>* hits);
-  double drift_particle(std::size_t i, double radius, double dt, std::vector<ParticleHit<Dim>>* hits);
+  Vec<Dim> drift_particle(std::size_t i, double radius, double dt, std::vector<ParticleHit<Dim>>* hits);
   void strike_bodies();
   double fastest_sound() const;
   double internal_energy(std::size_t i) const { return terms_.gas ? particles_.internal_energy[i] : 0.0; }
@@ -188,9 +208,10 @@ class Solver {
   NeighbourLists lists_;
   PeriodicImages<Dim> images_;  ///< none without a periodic axis
   PairFields<Dim, Real> fields_;
+  std::size_t n_searches_ = 0;
+  std::function<void(StepStage)> stage_ended_;
   Vec<Dim> origin_ = Vec<Dim>::Zero();
-  double travelled_ = std::numeric_limits<double>::infinity();  ///< farthest way of any particle since the last search [m]
-  double travelled_at_walls_ = std::numeric_limits<double>::infinity();  ///< the same since walls were found [m]
+  double travelled_ = std::numeric_limits<double>::infinity();  ///< farthest way of any particle against their mean since the last search [m]
   std::vector<double> clearance_;  ///< at least so far is each particle from all obstacles [m]; empty without any
   std::vector<DensitySums<Real>> density_sums_;  ///< empty where density follows the continuity equation
   std::optional<Walls<Dim>> walls_;  ///< absent where no obstacle is a wall

@@ -73,7 +73,7 @@ void Solver<Dim, Real>::check_state(double time) const {
     if (!(terms_.gas ? relative_density > 0.0 && std::isfinite(relative_density) : relative_density > 0.1 && relative_density < 10.0))
       return "the density";
     if (terms_.gas && !(p.internal_energy[i] > 0.0 && std::isfinite(p.internal_energy[i]))) return "the internal energy";
-    if (terms_.pair.heat && !(p.temperature[i] >= 0.0 && std::isfinite(p.temperature[i]))) return "the temperature (heat equation)";
+    if (terms_.pair.has_heat() && !(p.temperature[i] >= 0.0 && std::isfinite(p.temperature[i]))) return "the temperature (heat equation)";
     if (terms_.pair.stress && !p.stress[i].allFinite()) return "the extra stress (rheology)";
     if (!acceleration_[i].allFinite()) return "the acceleration (pressure and stress forces)";
     if (!p.velocity[i].allFinite() || !p.position[i].allFinite()) return "the velocity (leap-frog)";

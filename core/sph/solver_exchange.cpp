@@ -15,9 +15,9 @@ namespace {
 
 /// Keeps the entries that `keep` names, in order.
 template <typename T>
-void keep_only(std::vector<T>& values, const std::vector<std::size_t>& keep) {
+void keep_only(std::vector<T>& values, const std::vector<std::int32_t>& keep) {
   if (values.empty()) return;
-  for (std::size_t k = 0; k < keep.size(); ++k) values[k] = values[keep[k]];
+  for (std::size_t k = 0; k < keep.size(); ++k) values[k] = values[static_cast<std::size_t>(keep[k])];
   values.resize(keep.size());
 }
 
@@ -89,8 +89,8 @@ void Solver<Dim, Real>::exchange_particles(double time) {
   const bool more = pour_in(time);
   if (!fewer && !more) return;
   resize_derived();
-  travelled_ = travelled_at_walls_ = std::numeric_limits<double>::infinity();  // the lists name particles that are not there
-  std::fill(clearance_.begin(), clearance_.end(), 0.0);
+  if (walls_) walls_->grow(particles_.size());
+  travelled_ = std::numeric_limits<double>::infinity();  // the lists name particles that are not there
 }
 
 template <int Dim, typename Real>
@@ -107,7 +107,7 @@ void Solver<Dim, Real>::release_driven() {
 template <int Dim, typename Real>
 bool Solver<Dim, Real>::remove_outflow() {
   if (parameters_.outflows.empty()) return false;
-  std::vector<std::size_t> keep;
+  std::vector<std::int32_t> keep;
   keep.reserve(particles_.size());
   for (std::size_t i = 0; i < particles_.size(); ++i) {
     const bool out = !is_driven(i) && std::any_of(parameters_.outflows.begin(), parameters_.outflows.end(),
@@ -115,13 +115,15 @@ bool Solver<Dim, Real>::remove_outflow() {
     if (out)
       ++account_.removed[particles_.material.empty() ? 0 : particles_.material[i]];
     else
-      keep.push_back(i);
+      keep.push_back(static_cast<std::int32_t>(i));
   }
   if (keep.size() == particles_.size()) return false;
   for_each_array(particles_, [&](auto& values) { keep_only(values, keep); });
   keep_only(acceleration_, keep);  // the first half of the next kick, and the drift after it
   keep_only(xsph_, keep);
   keep_only(heat_balance_, keep);
+  keep_only(clearance_, keep);
+  if (walls_) walls_->reorder(keep);
   return true;
 }
 
@@ -141,7 +143,7 @@ bool Solver<Dim, Real>::pour_in(double time) {
       particles_.velocity.push_back(layers_[e].speed * emitter.direction);
       particles_.density.push_back(m.density);
       particles_.driven.push_back(static_cast<std::uint8_t>(e + 1));
-      if (terms_.pair.heat) particles_.temperature.push_back(emitter.temperature);
+      if (terms_.pair.has_heat()) particles_.temperature.push_back(emitter.temperature);
       if (terms_.latent_heat) particles_.enthalpy.push_back(enthalpy_at(*m.heat, emitter.temperature));
       if (!terms_.pair.stress) continue;
       const double u = !m.heat ? 0.0

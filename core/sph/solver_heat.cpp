@@ -30,7 +30,7 @@ void check_heat(const Material& m) {
 template <int Dim, typename Real>
 void Solver<Dim, Real>::set_up_heat() {
   terms_.exchange = parameters_.ambient.has_value() || !parameters_.heat_sources.empty();
-  if (!terms_.pair.heat) {
+  if (!terms_.pair.has_heat()) {
     if (terms_.exchange) fail("simulation: an ambient or heat sources are of no use where no material has heat");
     return;
   }

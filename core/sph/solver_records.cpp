@@ -15,7 +15,7 @@ void Solver<Dim, Real>::pack_heat(std::size_t i, double largest_conductivity, Re
       static_cast<Real>(particles_.temperature[i] - (materials_.front().heat ? materials_.front().heat->cold : 0.0));
   record[Fields::conductivity_at] =
       static_cast<Real>(largest_conductivity > 0.0 && m.heat ? conductivity(m) / largest_conductivity : 0.0);
-  record[Fields::moment_trace_at] = static_cast<Real>(heat_balance_[i].moment_trace);
+  record[Fields::inverse_trace_at] = static_cast<Real>(1.0 / heat_balance_[i].moment_trace);
   for (int a = 0; a < Dim; ++a) record[Fields::balance_at + a] = static_cast<Real>(heat_balance_[i].lambda[a]);
 }
 
@@ -25,7 +25,7 @@ void Solver<Dim, Real>::pack_motion(const std::vector<Vec<Dim>>& velocity) {
   const std::size_t n = particles_.size();
   const std::size_t n_records = n + images_.size();
   fields_.motion.resize(n_records * Fields::motion_stride);
-  if (terms_.pair.heat) fields_.heat.resize(n_records * Fields::heat_stride);
+  if (terms_.pair.has_heat()) fields_.heat.resize(n_records * Fields::heat_stride);
   const bool with_pressure = walls_ || terms_.diffusion;
   if (with_pressure) fields_.pressure.resize(n_records);
   double largest_conductivity = 0.0;
@@ -38,7 +38,7 @@ void Solver<Dim, Real>::pack_motion(const std::vector<Vec<Dim>>& velocity) {
     for (int a = 0; a < Dim; ++a) record[Fields::velocity_at + a] = static_cast<Real>(velocity[i][a]);
     record[Fields::volume_at] = static_cast<Real>(mass(i) / particles_.density[i]);
     record[Fields::density_at] = static_cast<Real>(particles_.density[i]);
-    if (terms_.pair.heat) pack_heat(i, largest_conductivity, fields_.heat.data() + i * Fields::heat_stride);
+    if (terms_.pair.has_heat()) pack_heat(i, largest_conductivity, fields_.heat.data() + i * Fields::heat_stride);
     if (with_pressure) fields_.pressure[i] = static_cast<Real>(pressure(i));
   });
   copy_motion_to_images();
@@ -55,7 +55,7 @@ void Solver<Dim, Real>::copy_motion_to_images() {
     // From the state, as its source's: shifting the rounded record would round it twice.
     const Vec<Dim> x = particles_.position[source] + images_.shift[k] - origin_;
     for (int a = 0; a < Dim; ++a) record[a] = static_cast<Real>(x[a]);
-    if (terms_.pair.heat)
+    if (terms_.pair.has_heat())
       std::copy_n(fields_.heat.data() + source * Fields::heat_stride, Fields::heat_stride,
                   fields_.heat.data() + (n + k) * Fields::heat_stride);
     if (!fields_.pressure.empty()) fields_.pressure[n + k] = fields_.pressure[source];

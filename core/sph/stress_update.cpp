@@ -1,7 +1,5 @@
 #include "core/sph/stress_update.h"
 
-#include <Eigen/LU>
-
 #include <cmath>
 
 namespace smelt {
@@ -13,11 +11,13 @@ double magnitude(const Mat<Dim>& symmetric) {
   return std::sqrt(0.5 * symmetric.squaredNorm());
 }
 
-/// Rotation over a step with constant velocity gradient: (1 - W/2)^-1 (1 + W/2), orthogonal to rounding.
+/// Rotation over a step with constant velocity gradient: (1 - H)^-1 (1 + H) of the skew H = W dt/2, orthogonal to rounding. As
+/// H^3 = -|H|^2 H with |H|^2 = H:H/2, it is 1 + 2 (H + H^2)/(1 + |H|^2).
 template <int Dim>
 Mat<Dim> step_rotation(const Mat<Dim>& velocity_gradient, double dt) {
   const Mat<Dim> half_spin = 0.25 * dt * (velocity_gradient - velocity_gradient.transpose());
-  return (Mat<Dim>::Identity() - half_spin).inverse() * (Mat<Dim>::Identity() + half_spin);
+  const double scale = 2.0 / (1.0 + 0.5 * half_spin.squaredNorm());
+  return Mat<Dim>::Identity() + scale * (half_spin + half_spin * half_spin);
 }
 
 }  // namespace

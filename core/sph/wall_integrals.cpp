@@ -255,6 +255,17 @@ WallKernel<Dim>::WallKernel(double smoothing_length, KernelType type)
   }
 }
 
+PlaneIntegral integrate_plane(const WallKernel<3>& kernel, double distance) {
+  const double h = kernel.smoothing_length(), q = distance / h;
+  PlaneIntegral plane;
+  for (const RadialTerm& term : kernel.terms()) {
+    if (q >= term.radius) break;
+    plane.area += 2.0 * std::numbers::pi / h * evaluate(term.ring, q);
+    plane.slope -= 2.0 * std::numbers::pi / (h * h) * q * evaluate(term.shape, q);
+  }
+  return plane;
+}
+
 template <int Dim>
 FacetIntegrals<Dim> integrate_facet(const WallKernel<Dim>& kernel, const Simplex<Dim>& facet, const Vec<Dim>& normal,
                                     const Vec<Dim>& point) {

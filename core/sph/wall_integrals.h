@@ -56,6 +56,13 @@ class WallKernel {
   std::size_t n_terms_ = 0;
 };
 
+/// `area` above of an infinite plane at distance d >= 0, and how it changes with the distance.
+struct PlaneIntegral {
+  double area = 0.0;   ///< A = int W dS [1/m]
+  double slope = 0.0;  ///< dA/dd = -2 pi d W(d) [1/m^2]
+};
+PlaneIntegral integrate_plane(const WallKernel<3>& kernel, double distance);
+
 /// What one facet f adds to the sums above.
 template <int Dim>
 struct FacetIntegrals {

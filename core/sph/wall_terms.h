@@ -16,6 +16,10 @@ Vec<Dim> held_by_wall(const Vec<Dim>& vector, const Vec<Dim>& normal, const Cont
   return (1.0 - slip) * vector + slip * vector.dot(normal) * normal;
 }
 
+/// A share of the density at rest far below what sound makes of it (1 % at a Mach number of 0.1): fluid this thin has come off the wall. A
+/// lone particle that leaves would lose all of its density to the mirrored velocity, which grows with 1/d.
+inline constexpr double cavitation_density = 0.97;
+
 /// - 2 sum (T - T_wall) A/d over the contacts with walls of given temperature (T_w - T = (T - T_wall) (n.y)/d in the solid) [K/m^2].
 template <int Dim>
 double wall_heat(const WallNeighbour<Dim>& wall, const Colliders<Dim>& colliders, double temperature) {
@@ -27,7 +31,8 @@ double wall_heat(const WallNeighbour<Dim>& wall, const Colliders<Dim>& colliders
 }
 
 /// Adds to the rate sums of a particle with velocity `v`, density `rho` and temperature `T`, P standing for held_by_wall:
-///   density_rate     - rho sum push (v - u).n                     (the velocity across is mirrored)
+///   density_rate     - rho sum push (v - u).n                     (the velocity across is mirrored; a wall does not draw
+///                                                                  fluid out below cavitation_density rho0)
 ///   velocity_moment  + sum stretch P (v - u) (x) n                (v_w - v = P (v - u) (n.y)/d in the solid, and
 ///                    + sum (1 - slip) Omega (Gamma I - first (x) n)      (1 - slip) Omega y: what turns with the wall is not sheared)
 ///   position_moment  + int y (x) grad_w dV
@@ -37,31 +42,33 @@ double wall_heat(const WallNeighbour<Dim>& wall, const Colliders<Dim>& colliders
 /// with theta [-] the particle's moment trace of the pass before.
 template <int Dim, typename Real>
 void accumulate_wall_rates(const WallNeighbour<Dim>& wall, const Colliders<Dim>& colliders, const PairTerms& terms,
-                           const Vec<Dim>& v, double rho, double temperature, double theta, RateSums<Dim, Real>& sums) {
+                           const Vec<Dim>& v, double rho, double rest_density, double temperature, double theta,
+                           RateSums<Dim, Real>& sums) {
   double density_rate = 0.0, solid = 0.0, conducting = 0.0;
   Mat<Dim> velocity_moment = Mat<Dim>::Zero();
   for (const WallContact<Dim>& contact : wall.contacts) {
     const PlacedObstacle<Dim>& placed = colliders.placed()[contact.obstacle];
     const Obstacle<Dim>& obstacle = placed.obstacle;
     const Vec<Dim> relative = v - contact.velocity;
-    density_rate -= rho * contact.push * relative.dot(contact.normal);
+    const double leaving = relative.dot(contact.normal);
+    if (leaving < 0.0 || rho > cavitation_density * rest_density) density_rate -= rho * contact.push * leaving;
     velocity_moment += contact.stretch * held_by_wall<Dim>(relative, contact.normal, obstacle.response) * contact.normal.transpose();
     if (!placed.twist.spin.isZero(0.0)) {
       const Mat<Dim> moment = contact.solid * Mat<Dim>::Identity() - contact.first * contact.normal.transpose();
       velocity_moment += (1.0 - obstacle.response.friction) * placed.twist.spin * moment;
     }
     solid += contact.solid;
-    if (!terms.heat || !obstacle.temperature) continue;
+    if (!terms.has_heat() || !obstacle.temperature) continue;
     conducting += contact.solid;
     for (int a = 0; a < Dim; ++a) sums.heat_imbalance[a] -= static_cast<Real>(contact.area * contact.normal[a]);
   }
   sums.density_rate += static_cast<Real>(density_rate);
-  if (terms.heat) sums.heat += static_cast<Real>(wall_heat<Dim>(wall, colliders, temperature) / theta);
+  if (terms.has_heat()) sums.heat += static_cast<Real>(wall_heat<Dim>(wall, colliders, temperature) / theta);
   if (conducting > 0.0) sums.moment_trace += static_cast<Real>(conducting / solid * wall.moment.trace() / Dim);
   if (terms.stress)
     for (int a = 0; a < Dim; ++a)
       for (int b = 0; b < Dim; ++b) sums.velocity_moment[a * Dim + b] += static_cast<Real>(velocity_moment(a, b));
-  if (!terms.stress && !terms.heat) return;
+  if (!terms.stress && !terms.has_heat()) return;
   const Symmetric<Dim> moment = to_symmetric<Dim>(wall.moment);
   for (int k = 0; k < n_symmetric<Dim>; ++k) sums.position_moment[k] += static_cast<Real>(moment[k]);
 }

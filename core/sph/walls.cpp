@@ -1,11 +1,10 @@
 #include "core/sph/walls.h"
 
+#include "core/error.h"
 #include "core/geometry/facet.h"
 #include "core/parallel.h"
 
-
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -86,169 +85,277 @@ void add_to_contact(const Piece<Dim>& piece, std::uint32_t obstacle, double same
 }  // namespace
 
 template <int Dim>
-void Walls<Dim>::find(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position, double slack) {
+void Walls<Dim>::reset(std::size_t n) {
+  slot_.assign(n, -1);
+  apart_.assign(n, 0.0);
+  neighbours_.clear();
+  views_.clear();
+  way_ = 0.0;
+}
+
+/// Slots follow the particles' order, so that what is near in space is near in memory.
+template <int Dim>
+void Walls<Dim>::reorder(std::span<const std::int32_t> order) {
+  std::vector<std::int32_t> slot(order.size(), -1);
+  std::vector<double> apart(order.size());
+  std::vector<WallNeighbour<Dim>> neighbours;
+  std::vector<View> views;
+  neighbours.reserve(neighbours_.size());
+  views.reserve(views_.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const auto from = static_cast<std::size_t>(order[i]);
+    apart[i] = apart_[from];
+    if (slot_[from] < 0) continue;
+    slot[i] = static_cast<std::int32_t>(neighbours.size());
+    neighbours.push_back(std::move(neighbours_[static_cast<std::size_t>(slot_[from])]));
+    neighbours.back().particle = static_cast<std::int32_t>(i);
+    views.push_back(std::move(views_[static_cast<std::size_t>(slot_[from])]));
+  }
+  slot_.swap(slot);
+  apart_.swap(apart);
+  neighbours_.swap(neighbours);
+  views_.swap(views);
+}
+
+template <int Dim>
+void Walls<Dim>::update(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position) {
+  CHECK_EQ(position.size(), slot_.size());
   if constexpr (Dim == 3)
     if (!sample_kernel_) {
       sample_kernel_.emplace(kernel_);
       for (const auto& placed : colliders.placed())
         trees_.emplace_back(placed.obstacle.wall ? std::span(placed.bvh.simplices()) : std::span<const Simplex<3>>{});
     }
-  found_.resize((position.size() + block_size - 1) / block_size);
-  parallel_blocks(found_.size(), [&](std::size_t b, std::size_t) { find_in_block(colliders, position, b * block_size, slack, found_[b]); }, 1);
+  way_ += colliders.step_way();
+  take_in(colliders, position);
+  constexpr std::size_t grain = 32;  // looking up takes long
+  parallel_blocks(
+      neighbours_.size(),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t k = begin; k < end; ++k) refresh(colliders, position[static_cast<std::size_t>(neighbours_[k].particle)], k);
+      },
+      grain);
+  drop_blind();
+}
 
-  slot_.assign(position.size(), -1);
-  neighbours_.clear();
-  first_.clear();
-  for (const Found& block : found_) {
-    first_.push_back(neighbours_.size());
-    for (const std::int32_t particle : block.particles) {
-      slot_[static_cast<std::size_t>(particle)] = static_cast<std::int32_t>(neighbours_.size());
-      neighbours_.push_back({particle, 0.0, Mat<Dim>::Zero(), {}});
+/// Whether particle `i`, which has no slot, is in reach of a wall; else, how far it is.
+template <int Dim>
+bool Walls<Dim>::comes_near(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position, std::size_t i) {
+  const double limit = reach() + 2.0 * kernel_.smoothing_length();
+  double nearest = limit;
+  for (const PlacedObstacle<Dim>& placed : colliders.placed())
+    if (placed.obstacle.wall && !placed.gone) nearest = std::min(nearest, placed.bvh.distance(placed.begin.to_rest(position[i]), nearest));
+  apart_[i] = nearest - kernel_.support_radius() + way_;
+  return nearest < reach();
+}
+
+/// Gives a slot to what has come near. In the order of the particles: what depends on it is the same on any number of threads.
+template <int Dim>
+void Walls<Dim>::take_in(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position) {
+  std::vector<std::vector<std::int32_t>> come((position.size() + block_size - 1) / block_size);
+  parallel_blocks(
+      come.size(),
+      [&](std::size_t block, std::size_t) {
+        for (std::size_t i = block * block_size; i < std::min(position.size(), (block + 1) * block_size); ++i)
+          if (slot_[i] < 0 && apart_[i] <= way_ && comes_near(colliders, position, i)) come[block].push_back(static_cast<std::int32_t>(i));
+      },
+      1);
+  for (const auto& block : come)
+    for (const std::int32_t i : block) {
+      slot_[static_cast<std::size_t>(i)] = static_cast<std::int32_t>(neighbours_.size());
+      neighbours_.push_back({i, 0.0, Mat<Dim>::Zero(), {}});
     }
-  }
+  views_.resize(neighbours_.size());
 }
 
+/// Takes the slots of those that no longer have anything in reach.
 template <int Dim>
-void Walls<Dim>::find_in_block(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position, std::size_t begin, double slack,
-                               Found& found) const {
-  found.particles.clear();
-  found.sights_end.clear();
-  found.sights.clear();
-  found.facets.clear();
-  found.patches_end.clear();
-  found.samples.clear();
-  const double reach = kernel_.support_radius() + slack;
-  std::vector<std::uint32_t> nearest;
-  WallPatches patches;
-  for (std::size_t i = begin; i < std::min(position.size(), begin + block_size); ++i) {
-    const std::size_t before = found.sights.size();
-    for (std::uint32_t o = 0; o < colliders.placed().size(); ++o) {
-      const auto& placed = colliders.placed()[o];
-      if (!placed.obstacle.wall || placed.gone) continue;
-      Sight sight;
-      sight.obstacle = o;
-      sight.origin = placed.begin.to_rest(position[i]);
-      const double distance = placed.bvh.distance(sight.origin, reach);
-      if (distance >= reach) continue;
-      if (!placed.obstacle.closed) {
-        nearest.clear();
-        placed.bvh.find_near(sight.origin, (1.0 + 1e-6) * distance, nearest);
-        sight.side = side_of<Dim>(placed.obstacle, placed.bvh, sight.origin, nearest);
-      }
-      if constexpr (Dim == 3) {
-        trees_[o].gather(sight.origin, kernel_.smoothing_length(), kernel_.support_radius(), slack, patches, found.facets);
-        for (std::size_t p = 0; p < patches.n; ++p) {
-          const WallPatch& patch = patches.patch[p];
-          if (patch.samples.empty()) continue;
-          pack_wall_samples(patch.samples, sight.origin, sight.side, found.samples);
-          found.patches_end.push_back(found.samples.size());
-        }
-      } else {
-        placed.bvh.find_near(sight.origin, reach, found.facets);
-      }
-      sight.facets_end = found.facets.size();
-      sight.patches_end = found.patches_end.size();
-      found.sights.push_back(sight);
+void Walls<Dim>::drop_blind() {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < neighbours_.size(); ++k) {
+    const auto i = static_cast<std::size_t>(neighbours_[k].particle);
+    if (views_[k].sights.empty()) {
+      slot_[i] = -1;
+      apart_[i] = way_;  // looked at anew at the next step
+      continue;
     }
-    if (found.sights.size() == before) continue;
-    found.particles.push_back(static_cast<std::int32_t>(i));
-    found.sights_end.push_back(found.sights.size());
-  }
-}
-
-template <int Dim>
-void Walls<Dim>::reorder(const std::vector<std::int32_t>& order) {
-  if (slot_.size() != order.size()) return;  // nothing was found yet
-  std::vector<std::int32_t> slot(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    slot[i] = slot_[static_cast<std::size_t>(order[i])];
-    if (slot[i] >= 0) neighbours_[static_cast<std::size_t>(slot[i])].particle = static_cast<std::int32_t>(i);
-  }
-  slot_.swap(slot);
-}
-
-template <int Dim>
-void Walls<Dim>::update(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position) {
-  contacts_.resize(found_.size());
-  parallel_blocks(found_.size(), [&](std::size_t b, std::size_t) {
-    const Found& found = found_[b];
-    std::vector<WallContact<Dim>>& contacts = contacts_[b];
-    contacts.clear();
-    std::array<std::size_t, block_size + 1> first{};
-    for (std::size_t k = 0; k < found.particles.size(); ++k) {
-      append_contacts(colliders, position[static_cast<std::size_t>(neighbours_[first_[b] + k].particle)], found, k, first_[b] + k, contacts);
-      first[k + 1] = contacts.size();
+    if (kept != k) {
+      neighbours_[kept] = std::move(neighbours_[k]);
+      views_[kept] = std::move(views_[k]);
+      slot_[i] = static_cast<std::int32_t>(kept);
     }
-    for (std::size_t k = 0; k < found.particles.size(); ++k)
-      neighbours_[first_[b] + k].contacts = {contacts.data() + first[k], first[k + 1] - first[k]};
-  }, 1);
+    ++kept;
+  }
+  neighbours_.resize(kept);
+  views_.resize(kept);
 }
 
 template <int Dim>
-void Walls<Dim>::append_contacts(const Colliders<Dim>& colliders, const Vec<Dim>& position, const Found& found, std::size_t k,
-                                 std::size_t slot, std::vector<WallContact<Dim>>& contacts) {
+void Walls<Dim>::refresh(const Colliders<Dim>& colliders, const Vec<Dim>& position, std::size_t slot) {
+  View& view = views_[slot];
   WallNeighbour<Dim>& seen = neighbours_[slot];
-  seen.solid = 0.0;
-  seen.moment.setZero();
-  const auto own = static_cast<std::ptrdiff_t>(contacts.size());
-  const double same_plane = 0.25 * kernel_.smoothing_length();
-  for (std::size_t s = k == 0 ? 0 : found.sights_end[k - 1]; s < found.sights_end[k]; ++s) {
-    const Sight& sight = found.sights[s];
-    const PlacedObstacle<Dim>& placed = colliders.placed()[sight.obstacle];
-    const SimplexBvh<Dim>& bvh = placed.bvh;
-    // Everything at rest first, then turned to where the obstacle is.
-    const std::size_t of_obstacle = contacts.size();
-    Mat<Dim> moment = Mat<Dim>::Zero();
-    const Vec<Dim> local = placed.begin.to_rest(position);
-    for (std::size_t f = s == 0 ? 0 : found.sights[s - 1].facets_end; f < sight.facets_end; ++f) {
-      const Simplex<Dim>& facet = bvh.simplices()[found.facets[f]];
-      const Vec<Dim> normal = sight.side * facet_normal<Dim>(facet);
-      const FacetIntegrals<Dim> integrals = is_small<Dim>(facet, local, kernel_.smoothing_length())
-                                                ? integrate_small_facet<Dim>(kernel_, facet, normal, local)
-                                                : integrate_facet<Dim>(kernel_, facet, normal, local);
-      // At the rim of the support rounding may leave next to nothing of either sign.
-      if (!(integrals.area > 0.0)) continue;
-      seen.solid += integrals.solid;
-      moment += integrals.solid * Mat<Dim>::Identity() - integrals.first * normal.transpose();
-      add_to_contact<Dim>({integrals.area, integrals.area * normal, integrals.first, integrals.solid, normal, (local - facet[0]).dot(normal)},
-                          sight.obstacle, same_plane, of_obstacle, contacts);
+  if (view.way < 0.0 || (position - view.origin).norm() + way_ - view.way > slack()) {
+    look_up(colliders, position, view);
+    if (view.sights.empty()) return;
+  }
+  // The lattice of a fluid at rest moves by less than this; it is far below what any sum changes over.
+  const double little = Dim == 3 ? 0.02 * kernel_.smoothing_length() : 0.0;
+  const Vec<Dim> moved = position - view.summed_at;
+  const bool stands = view.summed_way == way_ && moved.norm() <= little && shift(view, moved, seen);
+  if (!stands) {
+    sum(colliders, position, view);
+    shift(view, Vec<Dim>::Zero(), seen);
+  }
+  for (WallContact<Dim>& contact : seen.contacts) complete(colliders.placed()[contact.obstacle], position, contact);
+}
+
+template <int Dim>
+void Walls<Dim>::look_up(const Colliders<Dim>& colliders, const Vec<Dim>& position, View& view) const {
+  view.origin = position;
+  view.way = way_;
+  view.summed_way = -1.0;
+  view.sights.clear();
+  view.facets.clear();
+  view.patches_end.clear();
+  view.samples.clear();
+  thread_local std::vector<std::uint32_t> nearest;
+  [[maybe_unused]] thread_local WallPatches patches;
+  for (std::uint32_t o = 0; o < colliders.placed().size(); ++o) {
+    const auto& placed = colliders.placed()[o];
+    if (!placed.obstacle.wall || placed.gone) continue;
+    Sight sight;
+    sight.obstacle = o;
+    sight.origin = placed.begin.to_rest(position);
+    const double distance = placed.bvh.distance(sight.origin, reach());
+    if (distance >= reach()) continue;
+    if (!placed.obstacle.closed) {
+      nearest.clear();
+      placed.bvh.find_near(sight.origin, (1.0 + 1e-6) * distance, nearest);
+      sight.side = side_of<Dim>(placed.obstacle, placed.bvh, sight.origin, nearest);
     }
     if constexpr (Dim == 3) {
-      for (std::size_t p = s == 0 ? 0 : found.sights[s - 1].patches_end; p < sight.patches_end; ++p) {
-        const std::size_t begin = p == 0 ? 0 : found.patches_end[p - 1];
-        const SampleSums sums =
-            sum_wall_samples(*sample_kernel_, {found.samples.data() + begin, found.patches_end[p] - begin}, local - sight.origin);
-        if (!(sums.area > 0.0)) continue;
-        seen.solid += sums.solid;
-        moment += sums.moment;
-        const Vec3 normal = sums.normal.normalized();
-        add_to_contact<3>({sums.area, sums.normal, sums.first, sums.solid, normal, -sums.first.dot(normal) / sums.area}, sight.obstacle,
-                          same_plane, of_obstacle, contacts);
+      trees_[o].gather(sight.origin, kernel_.smoothing_length(), kernel_.support_radius(), slack(), patches, view.facets);
+      for (std::size_t p = 0; p < patches.n; ++p) {
+        const WallPatch& patch = patches.patch[p];
+        if (patch.samples.empty()) continue;
+        pack_wall_samples(patch.samples, sight.origin, sight.side, view.samples);
+        view.patches_end.push_back(view.samples.size());
       }
+    } else {
+      placed.bvh.find_near(sight.origin, reach(), view.facets);
     }
-    const Mat<Dim>& rotation = placed.begin.rotation;
-    seen.moment += rotation * moment * rotation.transpose();
-    for (auto contact = contacts.begin() + static_cast<std::ptrdiff_t>(of_obstacle); contact != contacts.end(); ++contact) {
-      contact->normal = rotation * contact->normal;
-      contact->first = rotation * contact->first;
+    sight.facets_end = view.facets.size();
+    sight.patches_end = view.patches_end.size();
+    view.sights.push_back(sight);
+  }
+}
+
+/// The sums over everything in sight: geometry alone, without what depends on how the obstacles move.
+template <int Dim>
+void Walls<Dim>::sum(const Colliders<Dim>& colliders, const Vec<Dim>& position, View& view) const {
+  view.summed_at = position;
+  view.summed_way = way_;
+  WallNeighbour<Dim>& sums = view.sums;
+  sums.solid = 0.0;
+  sums.moment.setZero();
+  sums.contacts.clear();
+  for (std::size_t k = 0; k < view.sights.size(); ++k) {
+    const PlacedObstacle<Dim>& placed = colliders.placed()[view.sights[k].obstacle];
+    sum_sight(placed, placed.begin.to_rest(position), k, view);
+  }
+  sums.moment = 0.5 * (sums.moment + sums.moment.transpose()).eval();
+  for (WallContact<Dim>& contact : sums.contacts) {
+    const double facets_area = contact.area;
+    contact.area = contact.normal.norm();
+    contact.normal /= contact.area;
+    contact.distance = -contact.first.dot(contact.normal) / facets_area;
+  }
+}
+
+/// Everything at rest first, then turned to where the obstacle is.
+template <int Dim>
+void Walls<Dim>::sum_sight(const PlacedObstacle<Dim>& placed, const Vec<Dim>& local, std::size_t k, View& view) const {
+  const Sight& sight = view.sights[k];
+  WallNeighbour<Dim>& sums = view.sums;
+  const double same_plane = 0.25 * kernel_.smoothing_length();
+  const std::size_t own = sums.contacts.size();
+  Mat<Dim> moment = Mat<Dim>::Zero();
+  for (std::size_t f = k == 0 ? 0 : view.sights[k - 1].facets_end; f < sight.facets_end; ++f) {
+    const Simplex<Dim>& facet = placed.bvh.simplices()[view.facets[f]];
+    const Vec<Dim> normal = sight.side * facet_normal<Dim>(facet);
+    const FacetIntegrals<Dim> integrals = is_small<Dim>(facet, local, kernel_.smoothing_length())
+                                              ? integrate_small_facet<Dim>(kernel_, facet, normal, local)
+                                              : integrate_facet<Dim>(kernel_, facet, normal, local);
+    // At the rim of the support rounding may leave next to nothing of either sign.
+    if (!(integrals.area > 0.0)) continue;
+    sums.solid += integrals.solid;
+    moment += integrals.solid * Mat<Dim>::Identity() - integrals.first * normal.transpose();
+    add_to_contact<Dim>({integrals.area, integrals.area * normal, integrals.first, integrals.solid, normal, (local - facet[0]).dot(normal)},
+                        sight.obstacle, same_plane, own, sums.contacts);
+  }
+  if constexpr (Dim == 3) {
+    for (std::size_t p = k == 0 ? 0 : view.sights[k - 1].patches_end; p < sight.patches_end; ++p) {
+      const std::size_t begin = p == 0 ? 0 : view.patches_end[p - 1];
+      const SampleSums patch =
+          sum_wall_samples(*sample_kernel_, {view.samples.data() + begin, view.patches_end[p] - begin}, local - sight.origin);
+      if (!(patch.area > 0.0)) continue;
+      sums.solid += patch.solid;
+      moment += patch.moment;
+      const Vec3 normal = patch.normal.normalized();
+      add_to_contact<3>({patch.area, patch.normal, patch.first, patch.solid, normal, -patch.first.dot(normal) / patch.area}, sight.obstacle,
+                        same_plane, own, sums.contacts);
     }
   }
-  seen.moment = 0.5 * (seen.moment + seen.moment.transpose()).eval();
-  for (auto contact = contacts.begin() + own; contact != contacts.end(); ++contact) {
-    const double facets_area = contact->area;
-    contact->area = contact->normal.norm();
-    contact->normal /= contact->area;
-    contact->distance = -contact->first.dot(contact->normal) / facets_area;
-    const PlacedObstacle<Dim>& placed = colliders.placed()[contact->obstacle];
-    contact->velocity = placed.velocity_at(position, contact->normal);
-    contact->acceleration = wall_acceleration_at<Dim>(placed, position);
-    // A plane seen from behind takes back what a plane in front of it gave: nothing goes on linearly from there.
-    if (contact->distance <= 0.0) continue;
-    const double distance = std::max(contact->distance, least_distance_);
-    contact->stretch = (contact->distance * contact->area + contact->solid) / distance;
-    contact->push = 2.0 * contact->area * std::max(1.0, 0.5 * spacing_ / distance);
-    contact->conductance = contact->area / distance;
+  const Mat<Dim>& rotation = placed.begin.rotation;
+  sums.moment += rotation * moment * rotation.transpose();
+  for (auto contact = sums.contacts.begin() + static_cast<std::ptrdiff_t>(own); contact != sums.contacts.end(); ++contact) {
+    contact->normal = rotation * contact->normal;
+    contact->first = rotation * contact->first;
   }
+}
+
+/// The sums of a view after the particle has moved a little, as those of a plane change with its distance: with d the contact's
+/// distance and s = 1 + dA/A of a whole plane, A' = s A, Gamma' = Gamma - (A + A')/2 dd (exact to the second order, as dGamma/dd = -A), and
+/// first' = s first, its part along n times d'/d as well. False where the particle would be in the plane.
+template <int Dim>
+bool Walls<Dim>::shift(const View& view, const Vec<Dim>& moved, WallNeighbour<Dim>& seen) const {
+  seen.solid = view.sums.solid;
+  seen.moment = view.sums.moment;
+  seen.contacts = view.sums.contacts;
+  if constexpr (Dim == 3) {
+    if (moved.isZero(0.0)) return true;
+    for (WallContact<3>& contact : seen.contacts) {
+      if (contact.distance <= 0.0) continue;
+      const Vec3& n = contact.normal;
+      const double nearer = moved.dot(n), distance = contact.distance + nearer;
+      if (distance <= 0.1 * contact.distance) return false;
+      const PlaneIntegral plane = integrate_plane(kernel_, contact.distance);
+      const double scale = plane.area > 0.0 ? std::max(0.0, 1.0 + plane.slope / plane.area * nearer) : 1.0;
+      const Vec3 first = scale * (contact.first + (distance / contact.distance - 1.0) * contact.first.dot(n) * n);
+      const double lost = 0.5 * (1.0 + scale) * contact.area * nearer;
+      const Mat3 tilt = 0.5 * (first - contact.first) * n.transpose();
+      seen.solid -= lost;
+      seen.moment -= lost * Mat3::Identity() + tilt + tilt.transpose();
+      contact.solid -= lost;
+      contact.first = first;
+      contact.area *= scale;
+      contact.distance = distance;
+    }
+  }
+  return true;
+}
+
+/// What follows from a contact's sums and its obstacle's motion.
+template <int Dim>
+void Walls<Dim>::complete(const PlacedObstacle<Dim>& placed, const Vec<Dim>& position, WallContact<Dim>& contact) const {
+  contact.velocity = placed.velocity_at(position, contact.normal);
+  contact.acceleration = wall_acceleration_at<Dim>(placed, position);
+  // A plane seen from behind takes back what a plane in front of it gave: nothing goes on linearly from there.
+  if (contact.distance <= 0.0) return;
+  const double distance = std::max(contact.distance, least_distance_);
+  contact.stretch = (contact.distance * contact.area + contact.solid) / distance;
+  contact.push = 2.0 * contact.area * std::max(1.0, 0.5 * spacing_ / distance);
+  contact.conductance = contact.area / distance;
 }
 
 template class Walls<1>;

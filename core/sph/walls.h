@@ -41,11 +41,12 @@ template <int Dim>
 struct WallNeighbour {
   std::int32_t particle = 0;
   double solid = 0.0;  ///< Gamma, share of the kernel inside solids [-]
-  Mat<Dim> moment;     ///< int y (x) grad_w dV over the solid, symmetric [-]
-  std::span<const WallContact<Dim>> contacts;
+  Mat<Dim> moment = Mat<Dim>::Zero();  ///< int y (x) grad_w dV over the solid, symmetric [-]
+  std::vector<WallContact<Dim>> contacts;
 };
 
-/// Which particles are near which facets, and what they see of them.
+/// Which particles are near which facets, and what they see of them. Each particle's facets are looked up anew once it has moved by
+/// h/4 against them, its sums made anew once it has moved by h/50: what rests or creeps costs next to nothing.
 template <int Dim>
 class Walls {
  public:
@@ -54,13 +55,22 @@ class Walls {
   Walls(const WallKernel<Dim>& kernel, double spacing, double least_distance)
       : kernel_(kernel), spacing_(spacing), least_distance_(least_distance) {}
 
-  /// Finds the particles that may come near a facet while none moves farther than `slack` [m].
-  void find(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position, double slack);
+  /// Forgets everything; there are `n` particles from now on.
+  void reset(std::size_t n);
 
-  /// Follows particles that were put in another order: now particle i is what particle order[i] was.
-  void reorder(const std::vector<std::int32_t>& order);
+  /// Follows particles that were put in another order, some of them left out: now particle i is what particle order[i] was.
+  void reorder(std::span<const std::int32_t> order);
 
-  /// What each of them sees from where it is now. Obstacles that are not walls are left out.
+  /// There are `n` particles from now on, those beyond the ones so far unknown.
+  void grow(std::size_t n) {
+    slot_.resize(n, -1);
+    apart_.resize(n, 0.0);
+  }
+
+  /// Particle `i` has moved by `way` [m].
+  void travel(std::size_t i, double way) { apart_[i] -= way; }
+
+  /// What every particle sees from where it is now, after a step of the obstacles. Obstacles that are not walls are left out.
   void update(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position);
 
   const std::vector<WallNeighbour<Dim>>& neighbours() const { return neighbours_; }
@@ -73,32 +83,45 @@ class Walls {
   struct Sight {
     std::uint32_t obstacle = 0;
     double side = 1.0;                    ///< +1 where the particle is in front of it, -1 behind
-    Vec<Dim> origin = Vec<Dim>::Zero();   ///< where it was found; samples are relative to it
-    std::size_t facets_end = 0, patches_end = 0;  ///< of its own in the block; they begin where those of the sight before end
+    Vec<Dim> origin = Vec<Dim>::Zero();   ///< where it was looked up; samples are relative to it
+    std::size_t facets_end = 0, patches_end = 0;  ///< of its own; they begin where those of the sight before end
   };
-  /// Of a block of particles.
-  struct Found {
-    std::vector<std::int32_t> particles;  ///< as they were numbered then
-    std::vector<std::size_t> sights_end;  ///< of each of them
+  /// What was looked up for one particle, and what came of it.
+  struct View {
+    Vec<Dim> origin = Vec<Dim>::Zero();  ///< where the particle was when it was looked up
+    double way = -1.0;                   ///< of the obstacles by then; -1: not looked up yet
     std::vector<Sight> sights;
-    std::vector<std::uint32_t> facets;    ///< to be integrated one by one
+    std::vector<std::uint32_t> facets;     ///< to be integrated one by one
     std::vector<std::size_t> patches_end;  ///< of patches of samples, in `samples`
     std::vector<float> samples;
+    Vec<Dim> summed_at = Vec<Dim>::Zero();  ///< where the particle was when it was summed
+    double summed_way = -1.0;               ///< -1: not summed yet
+    WallNeighbour<Dim> sums;                ///< of then
   };
-  void find_in_block(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position, std::size_t begin, double slack, Found& found) const;
-  void append_contacts(const Colliders<Dim>& colliders, const Vec<Dim>& position, const Found& found, std::size_t k, std::size_t slot,
-                       std::vector<WallContact<Dim>>& contacts);
+
+  /// Farther than this a particle sees nothing, however it moves until the next look [m].
+  double reach() const { return kernel_.support_radius() + slack(); }
+  double slack() const { return 0.25 * kernel_.smoothing_length(); }
+  bool comes_near(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position, std::size_t i);
+  void take_in(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position);
+  void drop_blind();
+  void refresh(const Colliders<Dim>& colliders, const Vec<Dim>& position, std::size_t slot);
+  void look_up(const Colliders<Dim>& colliders, const Vec<Dim>& position, View& view) const;
+  void sum(const Colliders<Dim>& colliders, const Vec<Dim>& position, View& view) const;
+  void sum_sight(const PlacedObstacle<Dim>& placed, const Vec<Dim>& local, std::size_t k, View& view) const;
+  bool shift(const View& view, const Vec<Dim>& moved, WallNeighbour<Dim>& seen) const;
+  void complete(const PlacedObstacle<Dim>& placed, const Vec<Dim>& position, WallContact<Dim>& contact) const;
 
   WallKernel<Dim> kernel_;
   double spacing_;
   double least_distance_;
+  double way_ = 0.0;  ///< of the obstacles, at least, since the last reset [m]
   std::vector<std::int32_t> slot_;  ///< of each particle among neighbours_, or -1
+  std::vector<double> apart_;  ///< how far the obstacles must have gone before a particle without a slot can see one [m]
   std::vector<WallNeighbour<Dim>> neighbours_;
+  std::vector<View> views_;  ///< of each of them
   std::optional<SampleKernel> sample_kernel_;  ///< in 3D
-  std::vector<WallTree> trees_;      ///< of every obstacle, in 3D
-  std::vector<Found> found_;         ///< of blocks of particles
-  std::vector<std::size_t> first_;   ///< neighbour of each block
-  std::vector<std::vector<WallContact<Dim>>> contacts_;  ///< of blocks
+  std::vector<WallTree> trees_;                ///< of every obstacle, in 3D
 };
 
 }  // namespace smelt

@@ -28,7 +28,7 @@ struct Pair {
       Real* record = fields.heat.data() + k * Fields::heat_stride;
       record[0] = k == 0 ? Real(1) : Real(3);
       record[Fields::conductivity_at] = k == 0 ? Real(1) : Real(0.6);
-      record[Fields::moment_trace_at] = k == 0 ? Real(0.5) : Real(1.1);
+      record[Fields::inverse_trace_at] = k == 0 ? Real(2) : Real(0.5);
       record[Fields::balance_at] = k == 0 ? Real(0.2) : Real(-0.3);
     }
     for (int a = 0; a < Dim; ++a) {
@@ -69,7 +69,8 @@ void expect_kernels_agree(double tolerance) {
                                       << "D at r/h = " << pair.r / h);
       PairTerms terms;
       terms.kernel = kernel;
-      terms.stress = terms.heat = terms.xsph = true;
+      terms.stress = terms.xsph = true;
+      terms.heat = HeatTerms::mixed;
       RateSums<Dim, Real> sums[2];
       compute_rate_sums<Dim, Real>(pair.fields, pair.lists, terms, h, 0, 2, sums);
       double approach = 0.0;
@@ -79,13 +80,13 @@ void expect_kernels_agree(double tolerance) {
       EXPECT_NEAR(sums[0].density_rate, 0.5 * 3.0 * approach * pair.f, tolerance * rate_scale);
       EXPECT_NEAR(sums[1].density_rate, 0.5 * 2.0 * approach * pair.f, tolerance * rate_scale);
       const double heat_scale = 10.0 * slope_scale / h;  // the quadratic's F peaks where r is some 0.1 h
-      // T_0 - T_1 = -2, the traces' mean 0.8, conductivities 1 and 0.6; the pair's own padding (r = 0) must add
+      // T_0 - T_1 = -2, the mean of 1/theta 1.25, conductivities 1 and 0.6; the pair's own padding (r = 0) must add
       // nothing.
       const double x = pair.fields.motion[0], balance = std::clamp(1.0 + x * 0.5, 0.2, 1.8);
-      EXPECT_NEAR(sums[0].heat, 2.0 * 0.5 * -2.0 * pair.f * balance / 0.8 * (2.0 * 0.6 / 1.6), tolerance * heat_scale);
+      EXPECT_NEAR(sums[0].heat, 2.0 * 0.5 * -2.0 * pair.f * balance * 1.25 * (2.0 * 0.6 / 1.6), tolerance * heat_scale);
       EXPECT_NEAR(sums[0].moment_trace, -0.5 * pair.r * pair.r * pair.f * balance / Dim, tolerance * heat_scale);
       EXPECT_NEAR(sums[0].heat_imbalance[0], 0.5 * pair.f * x * (1.0 + 0.3 * x), tolerance * heat_scale);
-      EXPECT_NEAR(sums[0].xsph[0], 2.0 * 0.5 * 3.0 / 5.0 * 3.0 * pair.w, tolerance * scalar.value(0.0));
+      EXPECT_NEAR(sums[0].xsph[0], 0.5 * 0.5 * 3.0 * (1.0 / 2.0 + 1.0 / 3.0) * 3.0 * pair.w, tolerance * scalar.value(0.0));
 
       std::array<Real, Dim> acceleration[2];
       terms.stress = false;
