@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 
+#include "cli/bench_commands.h"
 #include "cli/terminal_progress.h"
 #include "core/error.h"
 #include "scenes/check_scene.h"
@@ -86,12 +87,38 @@ void add_scene_options(CLI::App& command, SceneOptions& o, bool makes_frames) {
   command.add_flag("--resume", o.resume, "go on from what an earlier run left in the folder");
 }
 
+struct BenchOptions {
+  std::size_t n_particles = 100000;
+  int threads = 0;
+  bool json = false;
+};
+
+void add_bench(CLI::App& app, BenchOptions& o, std::function<void()>& work) {
+  CLI::App* bench = app.add_subcommand("bench", "how fast this machine is");
+  bench->require_subcommand(1);
+  const auto add = [&](const char* name, const char* what, void (*print)(std::size_t, bool)) {
+    CLI::App* command = bench->add_subcommand(name, what);
+    command->add_option("--particles", o.n_particles, "about how many; 100000 unless said")->check(CLI::Range(std::size_t{100}, std::size_t{100000000}));
+    command->add_option("--threads", o.threads, "threads to use; by default all")->check(CLI::Range(1, 4096));
+    command->add_flag("--json", o.json, "for machines");
+    command->callback([&o, &work, print] {
+      work = [&o, print] {
+        const auto threads = limit_threads(o.threads);
+        print(o.n_particles, o.json);
+      };
+    });
+  };
+  add("step", "particle-steps a second of a full melting step", print_step_bench);
+  add("terms", "what each term of a scene costs", print_terms_bench);
+}
+
 int run_parsed(int argc, char** argv) {
   CLI::App app("smelt: melts, sags, oozes and flows meshes as viscoplastic fluids", "smelt");
   app.set_version_flag("--version", std::string(version));
   app.require_subcommand(1);
   SceneOptions o;
   std::string file;
+  BenchOptions bench;
   std::function<void()> work;
 
   const auto add = [&](const char* name, const char* what, auto&& body) {
@@ -113,6 +140,7 @@ int run_parsed(int argc, char** argv) {
   add("info", "what a particle cache, checkpoint, surface or mesh holds", [&] { fmt::print("{}", describe_file(file)); })
       ->add_option("file", file, "the file")
       ->required();
+  add_bench(app, bench, work);
   add("scene-reference", "print all keys of a scene file", [] { fmt::print("{}", write_scene_reference()); });
 
   try {

@@ -74,13 +74,11 @@ std::vector<PlacedBody> import_bodies(const Scene& scene, std::vector<std::strin
   const double spacing = estimate_spacing(scene, volume);
   std::vector<PlacedBody> bodies;
   for (std::size_t k = 0; k < meshes.size(); ++k) {
-    try {
-      RepairedMesh repaired = repair(meshes[k], spacing);
-      if (repaired.report.repaired) warnings.push_back(fmt::format("{}: {}", scene.bodies[k].mesh, repaired.report.description));
-      bodies.push_back({std::move(repaired.mesh), 0.0, {}});
-    } catch (const Error& error) {
-      fail("{}: {}", scene.bodies[k].mesh, error.what());
-    }
+    const std::string& name = scene.bodies[k].mesh;
+    RepairedMesh repaired =
+        blame(scene.places, fmt::format("body.{}.mesh: {}", k, name), [&] { return repair(meshes[k], spacing); });
+    if (repaired.report.repaired) warnings.push_back(fmt::format("{}: {}", name, repaired.report.description));
+    bodies.push_back({std::move(repaired.mesh), 0.0, {}});
     bodies.back().volume = compute_volume(bodies.back().mesh);
     bodies.back().bounds = compute_bounds(bodies.back().mesh);
   }
@@ -101,11 +99,8 @@ std::vector<Seeds> seed_bodies(const Scene& scene, const std::vector<PlacedBody>
     else
       options.count = std::max<std::int64_t>(
           1, std::llround(static_cast<double>(*scene.particles.count) * bodies[k].volume / total));
-    try {
-      seeds.push_back(seed_particles(bodies[k].mesh, options));
-    } catch (const Error& error) {
-      fail("{}: {}", scene.bodies[k].mesh, error.what());
-    }
+    seeds.push_back(blame(scene.places, fmt::format("body.{}.mesh: {}", k, scene.bodies[k].mesh),
+                          [&] { return seed_particles(bodies[k].mesh, options); }));
   }
   return seeds;
 }
@@ -295,12 +290,16 @@ void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetu
 
 std::vector<TriangleMesh> import_placed_bodies(const Scene& scene) {
   std::vector<TriangleMesh> meshes;
-  for (const BodySettings& body : scene.bodies) meshes.push_back(import_placed(scene, body.mesh, body.placement, validate_mesh));
+  for (std::size_t k = 0; k < scene.bodies.size(); ++k)
+    meshes.push_back(blame(scene.places, fmt::format("body.{}.mesh", k),
+                           [&] { return import_placed(scene, scene.bodies[k].mesh, scene.bodies[k].placement, validate_mesh); }));
   return meshes;
 }
 
-TriangleMesh import_placed_collider(const Scene& scene, const ColliderSettings& collider) {
-  return import_placed(scene, collider.mesh, collider.placement, validate_surface, collider.terrain);
+TriangleMesh import_placed_collider(const Scene& scene, std::size_t k) {
+  const ColliderSettings& collider = scene.colliders[k];
+  return blame(scene.places, fmt::format("collider.{}.mesh", k),
+               [&] { return import_placed(scene, collider.mesh, collider.placement, validate_surface, collider.terrain); });
 }
 
 double count_poured(const SimulationSetup& setup, double seconds) {
@@ -349,16 +348,19 @@ SimulationSetup build_simulation(const Scene& scene) {
   Box3 scene_bounds = setup.body_bounds;
   for (const EmitterSettings& e : scene.emitters) scene_bounds.extend(e.position);
   const Vec3 middle = scene_bounds.centre();
-  for (const ColliderSettings& collider : scene.colliders) {
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
+    const ColliderSettings& collider = scene.colliders[k];
     if (collider.mesh == "ground") {
       scene_bounds.extend(Vec3(middle[0], collider.ground_height, middle[2]));
       setup.colliders.emplace_back();
     } else {
-      setup.colliders.push_back(import_placed_collider(scene, collider));
+      setup.colliders.push_back(import_placed_collider(scene, k));
     }
     TriangleMesh& mesh = setup.colliders.back();
     setup.obstacles.push_back(to_obstacle(collider, mesh));
-    if (collider.rigid()) setup.obstacles.back().mass = weigh_body(collider, mesh, setup.warnings);
+    if (collider.rigid())
+      setup.obstacles.back().mass =
+          blame(scene.places, fmt::format("collider.{}.mesh", k), [&] { return weigh_body(collider, mesh, setup.warnings); });
     const Motion<3>& motion = setup.obstacles.back().motion;
     const TriangleMesh at_start = motion.still() ? mesh : moved(mesh, pose_at(motion, 0.0));
     for (const Vec3& x : at_start.vertices) scene_bounds.extend(x);

@@ -35,7 +35,7 @@ Colliders<3> build_colliders(const SimulationSetup& setup);
 std::vector<TriangleMesh> import_placed_bodies(const Scene& scene);
 
 /// The mesh of a collider that is not `ground`, where the scene puts it. Throws Error with the mesh's file.
-TriangleMesh import_placed_collider(const Scene& scene, const ColliderSettings& collider);
+TriangleMesh import_placed_collider(const Scene& scene, std::size_t k);
 
 /// Particles that the emitters will have poured in after `seconds` of a shot.
 double count_poured(const SimulationSetup& setup, double seconds);

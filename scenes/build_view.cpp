@@ -73,8 +73,8 @@ RenderScene build_view(const Scene& scene) {
   if (ground != scene.colliders.end()) bounds.lower[1] = std::min(bounds.lower[1], ground->ground_height);
 
   std::vector<TriangleMesh> obstacles;
-  for (const ColliderSettings& collider : scene.colliders)
-    if (collider.mesh != "ground") obstacles.push_back(import_placed_collider(scene, collider));
+  for (std::size_t k = 0; k < scene.colliders.size(); ++k)
+    if (scene.colliders[k].mesh != "ground") obstacles.push_back(import_placed_collider(scene, k));
   if (bodies.empty())
     for (const TriangleMesh& mesh : obstacles)
       for (const Vec3& x : mesh.vertices) bounds.extend(x);

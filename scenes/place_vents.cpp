@@ -43,13 +43,12 @@ std::vector<Vec3> duct_sites(const Emitter<3>& emitter, const EmitterLayers<3>& 
 }
 
 /// What is poured in would land on top of a body's particles.
-void refuse_bodies_in_duct(const Emitter<3>& emitter, const EmitterLayers<3>& layers, const SimulationSetup& setup, const std::string& path) {
+void refuse_bodies_in_duct(const Emitter<3>& emitter, const EmitterLayers<3>& layers, const SimulationSetup& setup) {
   for (const Vec3& x : setup.particles.position) {
     const double along = (x - emitter.position).dot(emitter.direction);
     const double across = (x - emitter.position - along * emitter.direction).norm();
     if (along > -0.5 * setup.spacing && along < layers.depth && across < emitter.radius + 0.5 * setup.spacing)
-      fail("{}.position_m: a body fills the vent at ({:.4g}, {:.4g}, {:.4g}) m; move one of them, the vent reaches {:.3g} m along its direction", path,
-           x[0], x[1], x[2], layers.depth);
+      fail("a body fills the vent at ({:.4g}, {:.4g}, {:.4g}) m; move one of them, the vent reaches {:.3g} m along its direction", x[0], x[1], x[2], layers.depth);
   }
 }
 
@@ -60,7 +59,7 @@ std::optional<double> ground_over(const Scene& scene, const SimulationSetup& set
   return ground > x[1] ? std::optional(ground) : std::nullopt;
 }
 
-void refuse_vent_in_ground(const Scene& scene, const SimulationSetup& setup, const std::vector<Vec3>& places, const std::string& path) {
+void refuse_vent_in_ground(const Scene& scene, const SimulationSetup& setup, const std::vector<Vec3>& places) {
   for (std::size_t k = 0; k < setup.colliders.size(); ++k) {
     double deepest = 0.0, surface = 0.0;
     Vec3 where = Vec3::Zero();
@@ -72,9 +71,9 @@ void refuse_vent_in_ground(const Scene& scene, const SimulationSetup& setup, con
       where = x;
     }
     if (deepest > 0.0)
-      fail("{}.position_m: the vent is in collider {} (\"{}\"): at x = {:.4g}, z = {:.4g} it is at y = {:.6g} m, and the ground there at {:.6g} m; "
+      fail("the vent is in collider {} (\"{}\"): at x = {:.4g}, z = {:.4g} it is at y = {:.6g} m, and the ground there at {:.6g} m; "
            "raise it by {:.3g} m, or take the collider's upper faces away if it is a container",
-           path, k, scene.colliders[k].mesh, where[0], where[2], where[1], surface, deepest);
+           k, scene.colliders[k].mesh, where[0], where[2], where[1], surface, deepest);
   }
 }
 
@@ -102,14 +101,13 @@ void place_vents(const Scene& scene, SimulationSetup& setup) {
   const SolverParameters<3>& p = setup.parameters;
   for (std::size_t e = 0; e < p.emitters.size(); ++e) {
     const std::string path = fmt::format("emitter.{}", e);
-    EmitterLayers<3> layers;
-    try {
-      layers = compute_emitter_layers<3>(p.emitters[e], p.particle_volume, kernel_kappa(p.kernel) * p.smoothing_length);
-    } catch (const Error& error) {
-      fail("{}: {}", path, error.what());
-    }
-    refuse_bodies_in_duct(p.emitters[e], layers, setup, path);
-    refuse_vent_in_ground(scene, setup, duct_sites(p.emitters[e], layers, setup.spacing), path);
+    const auto layers = blame(scene.places, path, [&] {
+      return compute_emitter_layers<3>(p.emitters[e], p.particle_volume, kernel_kappa(p.kernel) * p.smoothing_length);
+    });
+    blame(scene.places, path + ".position_m", [&] {
+      refuse_bodies_in_duct(p.emitters[e], layers, setup);
+      refuse_vent_in_ground(scene, setup, duct_sites(p.emitters[e], layers, setup.spacing));
+    });
     setup.parameters.emitters[e].root = find_root(scene, setup, p.emitters[e], layers);
   }
 }

@@ -154,8 +154,14 @@ void prepare_collider(const Scene& scene, std::size_t k, double spacing, std::ve
 void prepare_colliders(const Scene& scene, const std::vector<std::size_t>& first, SimulationSetup& setup) {
   const double spacing = std::cbrt(setup.body_volume / static_cast<double>(std::max<std::size_t>(setup.particles.size(), 1)));
   std::vector<std::size_t> now = first;
-  for (std::size_t k = 0; k < setup.colliders.size(); ++k)
-    if (scene.colliders[k].mesh != "ground") prepare_collider(scene, k, spacing, now, setup);
+  for (std::size_t k = 0; k < setup.colliders.size(); ++k) {
+    if (scene.colliders[k].mesh == "ground") continue;
+    const std::string key = fmt::format("collider.{}.mesh", k);
+    const std::size_t n_warnings = setup.warnings.size();
+    blame(scene.places, key, [&] { prepare_collider(scene, k, spacing, now, setup); });
+    for (std::size_t w = n_warnings; w < setup.warnings.size(); ++w)
+      setup.warnings[w] = fmt::format("{}: {}", scene.places.find(key).text, setup.warnings[w]);
+  }
 }
 
 }  // namespace smelt

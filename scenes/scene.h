@@ -6,6 +6,7 @@
 #include "core/sph/material.h"
 #include "render/render_frame.h"
 #include "render/scene_view.h"
+#include "scenes/key_places.h"
 #include "surfacing/surface.h"
 
 #include <filesystem>
@@ -244,6 +245,8 @@ struct Scene {
 
   /// Folder of the scene file: mesh paths are looked up there first, then in smelt's own folder.
   std::filesystem::path folder;
+
+  KeyPlaces places;
 };
 
 }  // namespace smelt

@@ -14,6 +14,8 @@ namespace smelt {
 
 namespace {
 
+int line_of(const toml::source_region& source) { return static_cast<int>(source.begin.line); }
+
 std::string describe(const Limits& limits, bool whole) {
   const bool low = std::isfinite(limits.lower), high = std::isfinite(limits.upper);
   const std::string kind = whole ? "a whole number" : "a number";
@@ -134,7 +136,7 @@ class SceneReader final : public SchemaVisitor {
     if (!node && presence) return;
     // A table that is not there is read as an empty one: it may have keys without a default.
     static const toml::table empty;
-    errors_.locate(path_of(key), node ? node->source() : here().source());
+    errors_.places().locate(path_of(key), line_of(node ? node->source() : here().source()));
     scopes_.push_back({node ? node->as_table() : &empty, path_of(key), {}});
     visit_keys();
     close_scope();
@@ -150,7 +152,7 @@ class SceneReader final : public SchemaVisitor {
     resize(array->size());
     for (std::size_t k = 0; k < array->size(); ++k) {
       const std::string path = fmt::format("{}.{}", path_of(key), k);
-      errors_.locate(path, array->get(k)->source());
+      errors_.places().locate(path, line_of(array->get(k)->source()));
       scopes_.push_back({array->get(k)->as_table(), path, {}});
       visit_entry(k);
       close_scope();
@@ -163,7 +165,7 @@ class SceneReader final : public SchemaVisitor {
     for (const auto& [key, node] : *scope.table) {
       if (scope.known.contains(key.str())) continue;
       const std::string path = scope.path.empty() ? std::string(key.str()) : fmt::format("{}.{}", scope.path, key.str());
-      errors_.locate(path, node.source());
+      errors_.places().locate(path, line_of(node.source()));
       errors_.add(path, fmt::format("unknown key; {}", suggest(key.str(), scope.known)));
     }
     scopes_.pop_back();
@@ -191,7 +193,7 @@ class SceneReader final : public SchemaVisitor {
   const toml::node* find(const Key& key) {
     scopes_.back().known.emplace(key.name);
     const toml::node* node = here().get(key.name);
-    if (node) errors_.locate(path_of(key), node->source());
+    if (node) errors_.places().locate(path_of(key), line_of(node->source()));
     return node;
   }
 
@@ -301,7 +303,7 @@ void apply_override(toml::table& root, const std::string& text, SceneErrors& err
   }
   const auto parts = split_path(path);
   table_at(root, parts, text).insert_or_assign(parts.back(), *parsed.get("value"));
-  errors.overridden(path, "--set " + text);
+  errors.places().overridden(path, "--set " + text);
 }
 
 }  // namespace
@@ -318,6 +320,7 @@ Scene read_scene(const std::filesystem::path& path, const std::vector<std::strin
   reader.close_scope();
   validate_scene(scene, errors);
   errors.throw_if_any();
+  scene.places = errors.places();
   return scene;
 }
 

@@ -12,20 +12,15 @@
 namespace smelt {
 
 void SceneErrors::add(const std::string& key_path, const std::string& what) {
-  // An array's element stands where its array does.
-  std::string at = key_path.substr(0, key_path.find('['));
-  for (const auto& [path, text] : overrides_)
-    if (at == path || at.starts_with(path + ".")) return entries_.push_back({0, fmt::format("{}: {}: {}", text, key_path, what)});
-  while (!lines_.contains(at) && at.find('.') != std::string::npos) at = at.substr(0, at.rfind('.'));
-  const int line = lines_.contains(at) ? lines_.at(at) : 1;
-  entries_.push_back({line, fmt::format("{}:{}: {}: {}", file_, std::max(line, 1), key_path, what)});
+  const KeyPlaces::Place place = places_.find(key_path);
+  entries_.push_back({place.line, fmt::format("{}: {}", place.text, what)});
 }
 
 void SceneErrors::throw_if_any() const {
   if (entries_.empty()) return;
   std::vector<Entry> sorted = entries_;
   std::stable_sort(sorted.begin(), sorted.end(), [](const Entry& a, const Entry& b) { return a.line < b.line; });
-  std::string text = fmt::format("{} error{} in {}:", sorted.size(), sorted.size() == 1 ? "" : "s", file_);
+  std::string text = fmt::format("{} error{} in {}:", sorted.size(), sorted.size() == 1 ? "" : "s", places_.file());
   for (const Entry& entry : sorted) text += "\n  " + entry.text;
   throw Error(text);
 }

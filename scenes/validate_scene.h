@@ -1,10 +1,8 @@
 #pragma once
 // What a scene file must satisfy beyond the type and range of each key.
 
-#include "io/toml.h"
 #include "scenes/scene.h"
 
-#include <map>
 #include <string>
 #include <vector>
 
@@ -13,16 +11,11 @@ namespace smelt {
 /// Errors of one scene file, each with its place.
 class SceneErrors {
  public:
-  explicit SceneErrors(std::string file) : file_(std::move(file)) {}
+  explicit SceneErrors(std::string file) : places_(std::move(file)) {}
 
-  /// Remembers where a key stands.
-  void locate(const std::string& key_path, const toml::source_region& source) {
-    lines_[key_path] = static_cast<int>(source.begin.line);
-  }
-  /// Remembers that a key was set on the command line, as `text`.
-  void overridden(const std::string& key_path, const std::string& text) { overrides_[key_path] = text; }
+  KeyPlaces& places() { return places_; }
 
-  /// `key_path` need not exist: the line is then that of the innermost table around it that does.
+  /// `key_path` need not exist (KeyPlaces::find).
   void add(const std::string& key_path, const std::string& what);
 
   /// Throws Error with all of them, in the order of the file.
@@ -33,9 +26,7 @@ class SceneErrors {
     int line;
     std::string text;
   };
-  std::string file_;
-  std::map<std::string, int> lines_;
-  std::map<std::string, std::string> overrides_;
+  KeyPlaces places_;
   std::vector<Entry> entries_;
 };
 

@@ -98,16 +98,24 @@ SurfaceParticles<Dim> find_surface(const FreeSurfaceInput<Dim>& in) {
   return surface;
 }
 
-/// K of the surface, which has one dimension less than its space.
+/// K of the surface, which has one dimension less than its space: the cubic spline.
 template <int Dim>
-double lateral_kernel(double distance2, double h) {
-  if constexpr (Dim == 1) return 1.0;
-  constexpr int lateral = Dim == 1 ? 1 : Dim - 1;
-  const double q = std::sqrt(distance2) / h;
-  return q < 2.0 ? kernel_normalisation<lateral>(KernelType::cubic_spline) / std::pow(h, lateral) *
-                       kernel_shape(KernelType::cubic_spline, q)
-                 : 0.0;
-}
+class LateralKernel {
+ public:
+  explicit LateralKernel(double h) : inverse_h_(1.0 / h) {
+    if constexpr (Dim > 1) scale_ = kernel_normalisation<Dim - 1>(KernelType::cubic_spline) / std::pow(h, Dim - 1);
+  }
+
+  double value(double distance2) const {
+    if constexpr (Dim == 1) return 1.0;
+    const double q = std::sqrt(distance2) * inverse_h_;
+    return q < 2.0 ? scale_ * kernel_shape(KernelType::cubic_spline, q) : 0.0;
+  }
+
+ private:
+  double inverse_h_;
+  double scale_ = 1.0;
+};
 
 /// Share of the lateral kernel that lies in walls, which hold no particles; that of the kernel itself is as good as it.
 template <int Dim>
@@ -124,10 +132,10 @@ double share_in_walls(const FreeSurfaceInput<Dim>& in, std::size_t i, const Vec<
 
 /// Weight per area of the surface around particle i [1/m^(Dim - 1)].
 template <int Dim>
-double weight_density(const FreeSurfaceInput<Dim>& in, const SurfaceParticles<Dim>& surface, double h, std::size_t i) {
+double weight_density(const FreeSurfaceInput<Dim>& in, const SurfaceParticles<Dim>& surface, const LateralKernel<Dim>& kernel, std::size_t i) {
   const Vec<Dim>& n_i = surface.normal[i];
   const double half = 0.5 * in.spacing;
-  double density = surface.weight[i] * lateral_kernel<Dim>(0.0, h);
+  double density = surface.weight[i] * kernel.value(0.0);
   for (const std::int32_t entry : in.lists.row(i)) {
     const auto [j, x_ij] = neighbour_of(in, i, entry);
     if (surface.weight[j] == 0.0) continue;
@@ -140,7 +148,7 @@ double weight_density(const FreeSurfaceInput<Dim>& in, const SurfaceParticles<Di
     const double length2 = across.squaredNorm();
     const double height = length2 > 0.25 ? across.dot(y_ij) : 0.0;
     const double distance2 = std::max(0.0, y_ij.squaredNorm() - (length2 > 0.25 ? height * height / length2 : 0.0));
-    density += same_side * surface.weight[j] * lateral_kernel<Dim>(distance2, h);
+    density += same_side * surface.weight[j] * kernel.value(distance2);
   }
   return density / (1.0 - share_in_walls(in, i, n_i));
 }
@@ -150,10 +158,10 @@ double weight_density(const FreeSurfaceInput<Dim>& in, const SurfaceParticles<Di
 template <int Dim>
 void compute_free_surface_areas(const FreeSurfaceInput<Dim>& input, std::vector<double>& area) {
   const SurfaceParticles<Dim> surface = find_surface(input);
-  const double h = 0.5 * kernel_kappa(input.kernel) * input.smoothing_length;  // the cubic spline of the same support
+  const LateralKernel<Dim> kernel(0.5 * kernel_kappa(input.kernel) * input.smoothing_length);  // of the same support
   area.resize(input.position.size());
   parallel_for_each(area.size(), [&](std::size_t i) {
-    area[i] = surface.weight[i] > 0.0 ? surface.weight[i] / weight_density(input, surface, h, i) : 0.0;
+    area[i] = surface.weight[i] > 0.0 ? surface.weight[i] / weight_density(input, surface, kernel, i) : 0.0;
   });
 }
 

@@ -59,6 +59,7 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
   if (!(parameters_.particle_volume > 0.0) || !(parameters_.smoothing_length > 0.0) || !(parameters_.sound_speed > 0.0 || terms_.gas))
     fail("simulation: particle volume, smoothing length and sound speed must be > 0, are {}, {}, {}",
          parameters_.particle_volume, parameters_.smoothing_length, parameters_.sound_speed);
+  spacing_ = std::pow(parameters_.particle_volume, 1.0 / Dim);
   CHECK_EQ(particles_.density.size(), n);
   terms_.pair.kernel = parameters_.kernel;
   for (const Material& m : materials_) {
@@ -67,7 +68,7 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
   terms_.pair.heat = heat_terms(materials_);
   terms_.pair.xsph = parameters_.xsph > 0.0;
   for (int a = 0; a < Dim; ++a) terms_.periodic = terms_.periodic || is_periodic(parameters_.period, a);
-  check_period<Dim>(parameters_.period, list_reach());
+  check_period<Dim>(parameters_.period, list_reach(least_skin()));
   terms_.relaxed = terms_.pair.stress && parameters_.shear_wave_speed > 0.0;
   terms_.pair.hourglass = terms_.pair.stress && parameters_.hourglass_control > 0.0;
   terms_.diffusion = parameters_.density_diffusion > 0.0;
@@ -91,7 +92,7 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
     fail("simulation: walls and density diffusion are for liquids, not for an ideal gas");
   if (colliders_.has_walls())
     walls_.emplace(WallKernel<Dim>(parameters_.smoothing_length, parameters_.kernel),
-                   std::pow(parameters_.particle_volume, 1.0 / Dim),
+                   spacing_,
                    Colliders<Dim>::wall_guard * particle_radius<Dim>(parameters_.particle_volume));
   open_boundaries();
   resize_derived();
@@ -114,6 +115,7 @@ void Solver<Dim, Real>::resize_derived() {
   }
   if (terms_.diffusion) diffusion_sums_.resize(n);
   if (!colliders_.empty()) clearance_.resize(n, 0.0);
+  if (terms_.exchange) free_surface_area_.resize(n, 0.0);
 }
 
 // ---------------------------------------------------------------------------------------------------------- the algorithm
@@ -124,7 +126,7 @@ void Solver<Dim, Real>::prepare(double time) {
   if (terms_.pair.has_heat()) heat_balance_.assign(particles_.size(), {});
   std::fill(clearance_.begin(), clearance_.end(), 0.0);
   if (walls_) walls_->reset(particles_.size());
-  search_neighbours();
+  search_neighbours(least_skin());
   if (walls_) walls_->update(colliders_, particles_.position);
   if (terms_.exchange) find_free_surface();
   heat_ledger_ = {};
@@ -153,17 +155,16 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
   colliders_.begin_step(time, dt);
   drift(dt);
   if (colliders_.end_step()) {
-    travelled_ = std::numeric_limits<double>::infinity();
+    travelled_ = travelled_at_surface_ = std::numeric_limits<double>::infinity();
     if (walls_) walls_->reset(particles_.size());  // they saw an obstacle that is not there
   }
   if (colliders_.has_bodies()) strike_bodies();
   end_stage(StepStage::drift);
 
-  const bool searched = 2.0 * travelled_ > parameters_.skin * parameters_.smoothing_length;
-  if (searched) search_neighbours();
+  if (2.0 * travelled_ > skin_ * parameters_.smoothing_length) search_neighbours(best_skin(step_way_));
   end_stage(StepStage::search);
   if (walls_) walls_->update(colliders_, particles_.position);
-  if (searched && terms_.exchange) find_free_surface();
+  if (terms_.exchange && travelled_at_surface_ > 0.2 * parameters_.smoothing_length) find_free_surface();
   end_stage(StepStage::wall_sums);
 
   // Density, heat and stress change with the velocity that moved the particles.
@@ -185,9 +186,18 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
 
 // ------------------------------------------------------------------------------------------------------------- neighbours
 
+/// Pairs cost P (1 + skin/kappa)^3 a step, searches S/(skin h/2 way). With S about twice P, as measured (docs/performance.md), the sum is
+/// least about here. In a periodic box the reach is bounded by its size.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::search_neighbours() {
-  const double radius = list_reach();
+double Solver<Dim, Real>::best_skin(double way) const {
+  if (terms_.periodic || parameters_.skin) return least_skin();
+  return std::clamp(1.2 * std::sqrt(way / parameters_.smoothing_length), least_skin(), 0.35);
+}
+
+template <int Dim, typename Real>
+void Solver<Dim, Real>::search_neighbours(double skin) {
+  skin_ = skin;
+  const double radius = list_reach(skin);
   if (terms_.periodic) wrap_positions<Dim>(parameters_.period, particles_.position);
   const auto order = compute_cell_order<Dim>(particles_.position, particles_.id, radius);
   for_each_array(particles_, [&](auto& values) { reorder(values, order); });
@@ -195,6 +205,7 @@ void Solver<Dim, Real>::search_neighbours() {
   reorder(heat_balance_, order);
   if (terms_.periodic) std::fill(clearance_.begin(), clearance_.end(), 0.0);  // of places across the box
   reorder(clearance_, order);
+  reorder(free_surface_area_, order);
   // The rates of the last step look half a kick ahead (pack_gas), or say what gradient balances them (pack_gradients).
   if (terms_.gas || terms_.diffusion) reorder(acceleration_, order);
   if (terms_.gas) reorder(energy_rate_, order);
@@ -465,7 +476,9 @@ void Solver<Dim, Real>::drift(double dt) {
           farthest[block] = std::max(farthest[block], (drift_particle(i, radius, dt, hits) - together).norm());
       },
       1);
-  travelled_ += *std::max_element(farthest.begin(), farthest.end());
+  step_way_ = *std::max_element(farthest.begin(), farthest.end());
+  travelled_ += step_way_;
+  travelled_at_surface_ += step_way_;
 }
 
 /// Returns its way [m].

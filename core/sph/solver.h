@@ -53,7 +53,8 @@ struct SolverParameters {
   std::optional<Ambient> ambient;   ///< what the free surface loses heat to; absent: nothing
   std::vector<HeatSource<Dim>> heat_sources;  ///< what heats the free surface
   Box<Dim> domain;                  ///< a particle that leaves it has escaped: an error; empty box: no such check
-  double skin = 0.08;               ///< reach of the neighbour lists beyond the support, in smoothing lengths
+  /// Reach of the neighbour lists beyond the support, in smoothing lengths; absent: as the particles' motion makes cheapest.
+  std::optional<double> skin;
   std::vector<Emitter<Dim>> emitters;  ///< with the continuity equation alone, up to 255
   std::vector<Outflow<Dim>> outflows;
 };
@@ -128,7 +129,8 @@ class Solver {
   /// What passed since the last prepare(); all zero where no specific heat is known.
   const HeatLedger& heat_ledger() const { return heat_ledger_; }
   bool knows_enthalpy() const { return terms_.ledger; }
-  /// Free surface that each particle stood for at the last neighbour search [m^(Dim - 1)]; empty where no heat passes through it.
+  /// Free surface that each particle stood for when it was last found, less than a fifth of h ago [m^(Dim - 1)]; empty where no heat
+  /// passes through it.
   const std::vector<double>& free_surface_area() const { return free_surface_area_; }
 
   /// Sorts, searches and evaluates the forces anew from the state alone. Called at the start of every frame, so that a run resumed
@@ -147,8 +149,11 @@ class Solver {
     if (stage_ended_) stage_ended_(stage);
   }
   /// Of the neighbour lists [m].
-  double list_reach() const { return (kernel_kappa(parameters_.kernel) + parameters_.skin) * parameters_.smoothing_length; }
-  void search_neighbours();
+  double list_reach(double skin) const { return (kernel_kappa(parameters_.kernel) + skin) * parameters_.smoothing_length; }
+  /// The skin that makes search and pairs together cheapest where particles move by `way` [m] a step.
+  double best_skin(double way) const;
+  double least_skin() const { return parameters_.skin.value_or(0.08); }
+  void search_neighbours(double skin);
   void pack_heat(std::size_t i, double largest_conductivity, Real* record) const;
   void pack_motion(const std::vector<Vec<Dim>>& velocity);
   void pack_gas(std::size_t i, double dt);
@@ -201,6 +206,7 @@ class Solver {
   Colliders<Dim> colliders_;
   Particles<Dim> particles_;
   SolverTerms terms_;
+  double spacing_ = 0.0;  ///< of particles at rest [m]
   ParticleAccount account_;
   std::vector<EmitterLayers<Dim>> layers_;  ///< of each emitter
 
@@ -211,6 +217,9 @@ class Solver {
   std::size_t n_searches_ = 0;
   std::function<void(StepStage)> stage_ended_;
   Vec<Dim> origin_ = Vec<Dim>::Zero();
+  double skin_ = 0.0;  ///< reach of the neighbour lists beyond the support, in smoothing lengths
+  double step_way_ = 0.0;  ///< farthest way of any particle against their mean in the last step [m]
+  double travelled_at_surface_ = 0.0;  ///< the same since the free surface was found [m]
   double travelled_ = std::numeric_limits<double>::infinity();  ///< farthest way of any particle against their mean since the last search [m]
   std::vector<double> clearance_;  ///< at least so far is each particle from all obstacles [m]; empty without any
   std::vector<DensitySums<Real>> density_sums_;  ///< empty where density follows the continuity equation

@@ -123,6 +123,7 @@ bool Solver<Dim, Real>::remove_outflow() {
   keep_only(xsph_, keep);
   keep_only(heat_balance_, keep);
   keep_only(clearance_, keep);
+  keep_only(free_surface_area_, keep);
   if (walls_) walls_->reorder(keep);
   return true;
 }

@@ -68,13 +68,14 @@ double Solver<Dim, Real>::enthalpy(std::size_t i) const {
   return terms_.latent_heat ? particles_.enthalpy[i] : enthalpy_at(*material(i).heat, particles_.temperature[i]);
 }
 
-/// Particles have moved a fraction of a spacing since the last time: areas follow with the neighbour lists, not with every step.
+/// Areas change little while particles move by a fraction of a spacing.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::find_free_surface() {
+  travelled_at_surface_ = 0.0;
   std::vector<double> volume(particles_.size());
   parallel_for_each(volume.size(), [&](std::size_t i) { volume[i] = mass(i) / particles_.density[i]; });
   compute_free_surface_areas<Dim>({particles_.position, volume, images_, lists_, walls_ ? &*walls_ : nullptr, parameters_.kernel,
-                                   parameters_.smoothing_length, std::pow(parameters_.particle_volume, 1.0 / Dim)},
+                                   parameters_.smoothing_length, spacing_},
                                   free_surface_area_);
 }
 
@@ -135,7 +136,7 @@ double Solver<Dim, Real>::exchange_heat(std::size_t i, double dt, double time, d
   const Material& m = material(i);
   const HeatProperties& heat = *m.heat;
   const SurfaceExchange exchange = surface_exchange(i, time);
-  const double depth = 0.5 * std::pow(parameters_.particle_volume, 1.0 / Dim);
+  const double depth = 0.5 * spacing_;
   const double resistance = conductivity(m) > 0.0 ? depth / conductivity(m) : 0.0;
   const auto temperature_of = [&](double h) {
     return terms_.latent_heat ? temperature_at_enthalpy(heat, h) : heat.cold + h / heat.specific_heat;

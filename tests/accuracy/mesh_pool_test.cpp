@@ -17,8 +17,9 @@ namespace {
 
 constexpr double degrees = std::numbers::pi / 180.0;
 constexpr double depth = 0.5;  ///< scale of the pressure, of the sound speed [m]; about how deep the pools are
-/// [s] from the start: particles have moved off the lattice to where they rest
-constexpr double formed = 0.5;
+/// [s] from the start: particles have moved off the lattice to where they rest. They are crowded where sites were moved off
+/// the walls, and spread for seconds; the pressure is too low meanwhile.
+constexpr double formed = 5.0;
 
 /// What holds the water: y is up.
 struct Vessel {
@@ -207,7 +208,7 @@ double pressure_error(const Solver<3, float>& solver, const Vessel& v, double le
 }
 
 void test_pool(Vessel (*make)(double), int n_deep) {
-  constexpr double duration = 1.0;
+  const double duration = full_run() ? 10.0 : 5.5;
   const double spacing = depth / n_deep;
   const Vessel v = make(spacing);
   const auto parameters = pool_parameters(v, spacing);
@@ -221,7 +222,7 @@ void test_pool(Vessel (*make)(double), int n_deep) {
     Solver<3, float> oil(parameters, {newtonian_material(water_density, 0.02 * water_density)}, make_mesh_wall(v, 0.0),
                          std::move(particles));
     oil.prepare();
-    advance_by(oil, 1.0);
+    advance_by(oil, 2.0);
     particles = oil.particles();
     particles.stress.clear();
     particles.viscosity.clear();
@@ -249,25 +250,23 @@ void test_pool(Vessel (*make)(double), int n_deep) {
   }
   const std::string problem = fmt::format("pool on a mesh in 3D; {}", v.name);
   const std::string resolution = fmt::format("{} particles; {} triangles; {:g} s", n, v.facets.size(), duration);
-  report_row({problem, "pressure on the wall / rho g H; max after 0.5 s", resolution, worst});
+  report_row({problem, "pressure on the wall / rho g H; max after 5 s", resolution, worst, 0.03});
   report_row({problem, "fastest particle at the end [m/s]", resolution, speed, 0.1});
   report_row({problem, "drift of particles [spacings]; rms", resolution,
               std::sqrt(drift / static_cast<double>(n)) / spacing, 1.0});
   report_row({problem, "way of a centre behind the wall [spacings]", resolution, deepest / spacing, 0.0});
 }
 
-// The pressure has no bar yet: 3 % is asked for, and 14 to 16 % were measured a second after the water was let go
-// (docs/accuracy.md). That the water stays where it is, and in its vessel, has.
 TEST(MeshPool, Slope) {
-  test_pool(slope, 10);
+  test_pool(slope, 24);
 }
 TEST(MeshPool, TiltedBox) {
   if (!full_run()) GTEST_SKIP() << "takes long";
-  test_pool(tilted_box, 10);
+  test_pool(tilted_box, 20);
 }
 TEST(MeshPool, Bowl) {
   if (!full_run()) GTEST_SKIP() << "takes long";
-  test_pool(bowl, 10);
+  test_pool(bowl, 20);
 }
 
 }  // namespace

@@ -239,6 +239,62 @@ TEST_F(CommandLine, ABadSceneIsExitThreeAndNothingIsWritten) {
   EXPECT_FALSE(fs::exists(output("out")));
 }
 
+// Every bad obstacle or vent: exit 3, the key and its place in the scene or on the command line, and what to do. Nothing is written.
+TEST_F(CommandLine, BadCollidersSayWhereWhatAndHowToMend) {
+  const std::string scene = small_scene();
+  std::ofstream(folder_ / "nan.asc") << "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 0 0\n0 nan 0\n0 0 0\n";
+  std::ofstream(folder_ / "bad.toml") << std::ifstream(scene).rdbuf() << "[[collider]]\nmesh = \"assets/bad/empty.obj\"\n";
+  const std::string in_file = (folder_ / "bad.toml").string();
+  struct Case {
+    std::string scene;
+    std::vector<std::string> set;
+    std::vector<std::string> words;
+  };
+  const std::vector<Case> cases = {
+      {in_file, {}, {"bad.toml:", "collider.1.mesh", "empty.obj"}},
+      {scene, {"collider.0.mesh=assets/bad/nan.obj"}, {"collider.0.mesh", "nan.obj", "--set"}},
+      {scene, {"collider.0.mesh=" + (folder_ / "nan.asc").string()}, {"collider.0.mesh", "nan.asc", "7"}},
+      {scene, {"collider.0.mesh=assets/bad/not_a_mesh.obj"}, {"collider.0.mesh", "not_a_mesh.obj"}},
+      {scene, {"collider.0.mesh=assets/bad/open_box.obj", "collider.0.mass_kg=5"}, {"collider.0.mesh", "a rigid body needs a closed mesh"}},
+      {scene,
+       {"collider.0.mesh=assets/sphere.obj", "collider.0.keyframe=[{ time_s = 1.0 }, { time_s = 0.5 }]"},
+       {"collider.0.keyframe", "time_s"}},
+      {scene,
+       {"emitter=[{ material = \"wax\", position_m = [3.0, -1.0, 0.0], radius_m = 0.2, flow_rate_m3_s = 0.1, temperature_K = 390 }]"},
+       {"emitter.0.position_m", "raise it by"}},
+  };
+  for (const Case& c : cases) {
+    std::vector<std::string> arguments{"run", c.scene, "-o", output("out")};
+    for (const std::string& set : c.set) arguments.insert(arguments.end(), {"--set", set});
+    const Result result = run(arguments);
+    EXPECT_EQ(result.status, 3) << result.err;
+    for (const std::string& word : c.words) EXPECT_NE(result.err.find(word), std::string::npos) << word << " is not in: " << result.err;
+    EXPECT_FALSE(fs::exists(output("out")));
+  }
+}
+
+// What can be made sense of is a warning that says what was done.
+TEST_F(CommandLine, OddCollidersAreWarnedOf) {
+  const auto warns = [&](const std::vector<std::string>& set, const std::string& words) {
+    std::vector<std::string> arguments{"check", small_scene()};
+    for (const std::string& s : set) arguments.insert(arguments.end(), {"--set", s});
+    const Result result = run(arguments);
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_NE(result.err.find(words), std::string::npos) << result.err;
+    EXPECT_NE(result.err.find("collider.0.mesh"), std::string::npos) << result.err;
+  };
+  warns({"collider.0.mesh=assets/bad/inverted_box.obj", "collider.0.translate_m=[5,0,0]"}, "wound inward");
+  warns({"collider.0.mesh=assets/sphere.obj", "collider.0.scale=5000", "collider.0.translate_m=[0,-6000,0]"}, "enormous");
+  warns({"collider.0.mesh=assets/sphere.obj", "collider.0.scale=0.0001", "collider.0.translate_m=[0,-1,0]"}, "tiny");
+  warns({"collider.0.mesh=assets/sphere.obj", "collider.0.scale=0.1", "collider.0.translate_m=[0,0.3,0]"}, "start inside this solid collider");
+}
+
+TEST_F(CommandLine, BenchAnswersForPeopleAndMachines) {
+  EXPECT_NE(run({"bench", "step", "--particles", "500"}).out.find("million particle-steps/s"), std::string::npos);
+  EXPECT_NE(run({"bench", "terms", "--particles", "500", "--json"}).out.find("\"bytes_per_particle\""), std::string::npos);
+  EXPECT_EQ(run({"bench"}).status, 2);
+}
+
 TEST_F(CommandLine, WrongUsageIsExitTwo) {
   EXPECT_EQ(run({}).status, 2);
   EXPECT_EQ(run({"melt"}).status, 2);

@@ -119,14 +119,14 @@ TEST(EmitterScene, RefusesWhatCannotPour) {
 
 TEST(EmitterScene, TerrainIsRefinedAndPlaced) {
   const Scene scene = lava_scene({"collider.0.terrain.refine=2", "collider.0.translate_m=[0,10,0]", "collider.0.terrain.depth_m=20"});
-  const TriangleMesh mesh = import_placed_collider(scene, scene.colliders[0]);
+  const TriangleMesh mesh = import_placed_collider(scene, 0);
   const Box3 bounds = compute_bounds(mesh);
   EXPECT_TRUE(compute_topology(mesh).closed());
   EXPECT_NEAR(bounds.extent()[0], 860.0, 1e-9);
   EXPECT_NEAR(bounds.extent()[2], 600.0, 1e-9);
   EXPECT_NEAR(bounds.upper[1], 205.0, 0.5);
   EXPECT_GE(mesh.triangles.size(), 4u * 2u * 86u * 60u);
-  EXPECT_FALSE(compute_topology(import_placed_collider(lava_scene({"collider.0.terrain.closed=false"}), lava_scene({"collider.0.terrain.closed=false"}).colliders[0])).closed());
+  EXPECT_FALSE(compute_topology(import_placed_collider(lava_scene({"collider.0.terrain.closed=false"}), 0)).closed());
 }
 
 TEST(EmitterScene, ForecastCountsWhatWillBePoured) {

@@ -1,0 +1,58 @@
+#include "cli/bench_commands.h"
+
+#include "bench/step_bench.h"
+#include "scenes/version.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace smelt {
+
+namespace {
+
+nlohmann::ordered_json to_json(const StepBenchResult& r) {
+  return {{"particles", r.n_particles},
+          {"neighbours", r.neighbours},
+          {"seconds_per_step", r.seconds_per_step},
+          {"particle_steps_per_second", r.particle_steps_per_second()},
+          {"steps_per_search", r.steps_per_search},
+          {"bytes_per_particle", r.bytes_per_particle}};
+}
+
+void print_json(nlohmann::ordered_json json) {
+  json["smelt"] = version;
+  fmt::print("{}\n", json.dump(2));
+}
+
+}  // namespace
+
+void print_step_bench(std::size_t n_particles, bool as_json) {
+  const StepBenchResult r = bench_step(n_particles);
+  if (as_json) return print_json({{"step", to_json(r)}});
+  fmt::print("{:.2f} million particle-steps/s\n", r.particle_steps_per_second() / 1e6);
+  fmt::print("{} particles, {:.1f} neighbours, {:.4g} ms a step, {:.1f} steps between searches, {:.0f} bytes a particle\n", r.n_particles,
+             r.neighbours, 1e3 * r.seconds_per_step, r.steps_per_search, r.bytes_per_particle);
+}
+
+void print_terms_bench(std::size_t n_particles, bool as_json) {
+  struct Case {
+    const char* name;
+    StepBenchTerms terms;
+  };
+  const Case cases[] = {{"Newtonian", {.viscoplastic = false, .heat = false, .walls = false}},
+                        {"SMD", {.viscoplastic = true, .heat = false, .walls = false}},
+                        {"SMD + heat", {.viscoplastic = true, .heat = true, .walls = false}},
+                        {"SMD + heat + walls", {.viscoplastic = true, .heat = true, .walls = true}}};
+  nlohmann::ordered_json all;
+  if (!as_json) fmt::print("| scene | bytes a particle | seconds a step | million particle-steps/s |\n|---|---|---|---|\n");
+  for (const Case& c : cases) {
+    const StepBenchResult r = bench_step(n_particles, c.terms);
+    if (as_json)
+      all["terms"][c.name] = to_json(r);
+    else
+      fmt::print("| {} | {:.0f} | {:.4f} | {:.2f} |\n", c.name, r.bytes_per_particle, r.seconds_per_step, r.particle_steps_per_second() / 1e6);
+  }
+  if (as_json) print_json(std::move(all));
+}
+
+}  // namespace smelt

@@ -1,0 +1,14 @@
+#pragma once
+// `smelt bench`: how fast this machine is, as text or JSON on stdout.
+
+#include <cstddef>
+
+namespace smelt {
+
+/// The full melting step of a heap of about `n_particles`: "X.XX million particle-steps/s", and what stands behind it.
+void print_step_bench(std::size_t n_particles, bool as_json);
+
+/// Bytes a particle and seconds a step of scenes that ask for ever more terms.
+void print_terms_bench(std::size_t n_particles, bool as_json);
+
+}  // namespace smelt
