@@ -34,4 +34,12 @@ std::array<std::uint8_t, 3> quantize_srgb(const Vec3f& colour, float dither) {
   return bytes;
 }
 
+std::array<std::uint16_t, 3> quantize_srgb16(const Vec3f& colour) {
+  std::array<std::uint16_t, 3> values{};
+  for (int i = 0; i < 3; ++i)
+    values[static_cast<std::size_t>(i)] =
+        static_cast<std::uint16_t>(65535.0f * srgb_from_linear(std::clamp(colour[i], 0.0f, 1.0f)) + 0.5f);
+  return values;
+}
+
 }  // namespace smelt

@@ -22,4 +22,7 @@ float linear_from_srgb(float value);
 /// against banding in gradients.
 std::array<std::uint8_t, 3> quantize_srgb(const Vec3f& colour, float dither);
 
+/// The same with 16 bits, rounded.
+std::array<std::uint16_t, 3> quantize_srgb16(const Vec3f& colour);
+
 }  // namespace smelt

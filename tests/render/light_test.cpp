@@ -1,4 +1,4 @@
-#include "render/light.h"
+#include "render/light_set.h"
 
 #include <gtest/gtest.h>
 
