@@ -27,7 +27,7 @@ CrustSample sample_crust(const CrustLook& look, const Vec3f& rest, float solid) 
 }
 
 float crust_cooling(const CrustLook& look, float cover, float solid) {
-  return look.cooler_K * cover * (0.2f + 0.8f * solid);
+  return look.cooler_K * cover * (0.4f + 0.6f * solid);
 }
 
 }  // namespace smelt

@@ -16,8 +16,8 @@ struct CrustSample {
 /// `rest`: place in the unmoved material [m]; `solid`: 0 liquid, 1 set. Cracks are widest where it is liquid.
 CrustSample sample_crust(const CrustLook& look, const Vec3f& rest, float solid);
 
-/// How much cooler than the fluid under it the crust is [K]: look.cooler_K on a plate that has set, a fifth of it on one
-/// that floats on liquid, nothing in a crack.
+/// How much cooler than the fluid under it the crust is [K]: look.cooler_K on a plate that has set, two fifths of it on
+/// one that floats on liquid, nothing in a crack.
 float crust_cooling(const CrustLook& look, float cover, float solid);
 
 }  // namespace smelt

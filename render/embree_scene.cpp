@@ -63,6 +63,23 @@ int EmbreeScene::add_mesh(const TriangleMesh& mesh, const Vec3& origin, std::spa
   return number;
 }
 
+int EmbreeScene::add_spheres(std::span<const Vec3> centres, double radius, const Vec3& origin) {
+  const int number = handles_->n_meshes++;
+  if (centres.empty()) return number;
+  RTCGeometry geometry = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+  auto* spheres = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), centres.size()));
+  handles_->check("copying particles");
+  for (const Vec3& centre : centres) {
+    for (int i = 0; i < 3; ++i) *spheres++ = static_cast<float>(centre[i] - origin[i]);
+    *spheres++ = static_cast<float>(radius);
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(handles_->scene, geometry, static_cast<unsigned>(number));
+  rtcReleaseGeometry(geometry);
+  return number;
+}
+
 void EmbreeScene::commit() {
   // One thread builds the hierarchy: two could order its leaves differently from run to run, and so the pictures. (Embree's own
   // "threads=1" would hold all of oneTBB to one thread.)

@@ -1,5 +1,5 @@
 #pragma once
-// Rays against triangles, eight at a time.
+// Rays against triangles and spheres, eight at a time.
 
 #include "core/geometry/triangle_mesh.h"
 #include "core/geometry/vec.h"
@@ -49,6 +49,8 @@ class EmbreeScene {
   /// counted from 0. An empty mesh takes a number too. While the shutter is open, for `shutter` [s], vertices move with
   /// their `velocity` [m/s] (empty: they stand still), and are half-way where the mesh says.
   int add_mesh(const TriangleMesh& mesh, const Vec3& origin, std::span<const Vec3f> velocity = {}, float shutter = 0.0f);
+  /// Adds spheres of one radius [m], moved by -origin. A hit's `triangle` is the number of its sphere.
+  int add_spheres(std::span<const Vec3> centres, double radius, const Vec3& origin);
   /// Builds the hierarchy.
   void commit();
 

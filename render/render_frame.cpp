@@ -76,16 +76,18 @@ void check_eye_outside(const ShadingScene& scene) {
 
 /// Tone-maps every pixel; `quantize(display colour, x, y)` makes its numbers.
 template <typename Channel, typename Quantize>
-ImageRgb<Channel> develop(const Film& film, double exposure, const Quantize& quantize) {
+ImageRgb<Channel> develop(const Film& film, double exposure, ToneCurve curve, const Quantize& quantize) {
   ImageRgb<Channel> image{film.width, film.height, {}};
   image.pixels.resize(film.size());
   const auto gain = static_cast<float>(exposure);
   const auto width = static_cast<std::size_t>(film.width);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, film.size(), 8192),
                     [&](const tbb::blocked_range<std::size_t>& pixels) {
-                      for (std::size_t i = pixels.begin(); i < pixels.end(); ++i)
-                        image.pixels[i] = quantize(tone_map_neutral(radiance_at(film, i) * gain), static_cast<int>(i % width),
-                                                   static_cast<int>(i / width));
+                      for (std::size_t i = pixels.begin(); i < pixels.end(); ++i) {
+                        const Vec3f exposed = radiance_at(film, i) * gain;
+                        const Vec3f shown = curve == ToneCurve::film ? tone_map_film(exposed) : tone_map_neutral(exposed);
+                        image.pixels[i] = quantize(shown, static_cast<int>(i % width), static_cast<int>(i / width));
+                      }
                     });
   return image;
 }
@@ -97,15 +99,15 @@ Vec3f radiance_at(const Film& film, std::size_t pixel) {
          read_pixel(film.emission, pixel);
 }
 
-ImageRgb8 develop8(const Film& film, double exposure) {
-  return develop<std::uint8_t>(film, exposure, [](const Vec3f& colour, int x, int y) {
+ImageRgb8 develop8(const Film& film, double exposure, ToneCurve curve) {
+  return develop<std::uint8_t>(film, exposure, curve, [](const Vec3f& colour, int x, int y) {
     const Sample2 s = PixelSampler(x, y, 0, 1, 0).draw(0);
     return quantize_srgb(colour, s.u + s.v - 1.0f);
   });
 }
 
-ImageRgb16 develop16(const Film& film, double exposure) {
-  return develop<std::uint16_t>(film, exposure, [](const Vec3f& colour, int, int) { return quantize_srgb16(colour); });
+ImageRgb16 develop16(const Film& film, double exposure, ToneCurve curve) {
+  return develop<std::uint16_t>(film, exposure, curve, [](const Vec3f& colour, int, int) { return quantize_srgb16(colour); });
 }
 
 LayeredImage to_layers(const Film& film, const Vec3& eye) {

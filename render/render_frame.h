@@ -33,8 +33,8 @@ Film render_film(const SurfaceMesh& fluid, const RenderScene& scene, const Rende
 Vec3f radiance_at(const Film& film, std::size_t pixel);
 
 /// Tone-mapped sRGB, dithered to 8 bits or rounded to 16.
-ImageRgb8 develop8(const Film& film, double exposure);
-ImageRgb16 develop16(const Film& film, double exposure);
+ImageRgb8 develop8(const Film& film, double exposure, ToneCurve curve = ToneCurve::neutral);
+ImageRgb16 develop16(const Film& film, double exposure, ToneCurve curve = ToneCurve::neutral);
 
 /// The picture and its layers, linear and unexposed, named as OpenEXR does: R, G, B, A; albedo.R, .G, .B; depth.Z;
 /// normal.X, .Y, .Z; position.X, .Y, .Z in the world [m]; temperature.T [K]; velocity.X, .Y, .Z [m/s]. The film must have

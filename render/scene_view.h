@@ -88,14 +88,14 @@ enum class MaterialKind {
 /// The surface glows as its temperature says.
 struct BlackBodyLook {
   float emissivity = 0.95f;    ///< in (0, 1]
-  float white_cd_m2 = 300.0f;  ///< luminance that counts as a radiance of 1 [cd/m^2]: sunlit white 30000, dusk 100
+  float white_cd_m2 = 2500.0f;  ///< luminance that counts as a radiance of 1 [cd/m^2]: sunlit white 30000, dusk 100
 };
 
 /// Plates with cracks, in coordinates of the unmoved material.
 struct CrustLook {
   float plate_m = 1.0f;     ///< size of the plates [m]
   float crack = 0.1f;       ///< width of cracks over the plates' size where it has set, in (0, 0.5]
-  float cooler_K = 250.0f;  ///< how much cooler than the fluid its crust is [K]
+  float cooler_K = 350.0f;  ///< how much cooler than the fluid its crust is [K]
   float relief = 0.5f;      ///< height of the relief, 0: smooth; in [0, 2]
 };
 
@@ -134,6 +134,12 @@ struct ColliderView {
   MaterialKind material = MaterialKind::rock;
   float roughness = 0.5f;  ///< of its coat, or of the metal, in (0, 1]
   float specular = 0.0f;   ///< strength of its coat's reflection, in [0, 1]
+};
+
+/// How radiance that no display can show is brought back.
+enum class ToneCurve {
+  neutral,  ///< bright colours keep their hue and bleach
+  film      ///< each colour fills up by itself, as in film: red turns to orange, yellow and white
 };
 
 struct RenderScene {

@@ -242,6 +242,7 @@ struct LookSettings {
   std::optional<double> specular;
   double ior = 1.45;
   double exposure = 1.0;
+  std::optional<std::string> tone_curve;
   std::optional<BlackBodyLook> black_body;
   std::optional<CrustLook> crust;
 };

@@ -75,10 +75,10 @@ class SceneReader final : public SchemaVisitor {
     if (const auto* node = require(key)) read_text(*node, path_of(key), value);
   }
   void choice(const Key& key, std::string& value, const std::vector<std::string_view>& choices) override {
-    const auto* node = find(key);
-    if (!node || !read_text(*node, path_of(key), value)) return;
-    if (std::find(choices.begin(), choices.end(), value) == choices.end())
-      errors_.add(path_of(key), fmt::format("\"{}\" is none of {}", value, fmt::join(choices, ", ")));
+    if (const auto* node = find(key)) read_choice(*node, path_of(key), value, choices);
+  }
+  void choice(const Key& key, std::optional<std::string>& value, const std::vector<std::string_view>& choices) override {
+    if (const auto* node = find(key)) read_choice(*node, path_of(key), value.emplace(), choices);
   }
   void vector(const Key& key, Vec3& value, const Limits& limits) override {
     if (const auto* node = find(key)) read_vector(*node, path_of(key), value, limits);
@@ -239,6 +239,12 @@ class SceneReader final : public SchemaVisitor {
       value = *b;
     else
       wrong_type(node, path, "true or false");
+  }
+
+  void read_choice(const toml::node& node, const std::string& path, std::string& value, const std::vector<std::string_view>& choices) {
+    if (!read_text(node, path, value)) return;
+    if (std::find(choices.begin(), choices.end(), value) == choices.end())
+      errors_.add(path, fmt::format("\"{}\" is none of {}", value, fmt::join(choices, ", ")));
   }
 
   bool read_text(const toml::node& node, const std::string& path, std::string& value) {

@@ -344,7 +344,7 @@ void visit_glow(SchemaVisitor& v, LookSettings& s) {
   BlackBodyLook body = s.black_body.value_or(BlackBodyLook{});
   v.table({"black_body", "the surface glows as its temperature says, and lights what is around it. Lava has it in any case"}, &glows, [&] {
     visit_float(v, {"emissivity", "share of a black body's light"}, body.emissivity, {0.0, 1.0, true});
-    visit_float(v, {"white_cd_m2", "luminance that counts as a radiance of 1: 30000 in the sun, 100 at dusk. Rock of 1400 K gives off 2400"},
+    visit_float(v, {"white_cd_m2", "luminance that counts as a radiance of 1: 30000 in the sun, 100 at dusk; rock of 1400 K gives off 2400"},
                 body.white_cd_m2, positive);
   });
   if (glows) s.black_body = body;
@@ -383,6 +383,10 @@ void visit_render(SchemaVisitor& v, Scene& s) {
     v.number({"specular", "strength of the coat's reflection", "1; of rock and lava 0.5"}, s.look.specular, unit_interval);
     v.number({"ior", "index of refraction of the coat"}, s.look.ior, {1.01, 3.0});
     v.number({"exposure", "brightness before tone mapping"}, s.look.exposure, positive);
+    v.choice({"tone_curve", "what becomes of colours too bright for a display; `neutral`: they keep their hue and bleach; `film`: red turns to orange, "
+                            "yellow and white",
+              "neutral; of lava film"},
+             s.look.tone_curve, {"neutral", "film"});
     visit_look_state(v, "cold", "at and below cold_K", s.look.cold);
     visit_look_state(v, "hot", "at and above hot_K", s.look.hot);
     visit_glow(v, s.look);

@@ -75,6 +75,9 @@ class TomlWriter final : public SchemaVisitor {
   }
   void required_text(const Key& key, std::string& value) override { line(key, toml_string(value)); }
   void choice(const Key& key, std::string& value, const std::vector<std::string_view>&) override { line(key, toml_string(value)); }
+  void choice(const Key& key, std::optional<std::string>& value, const std::vector<std::string_view>&) override {
+    if (value) line(key, toml_string(*value));
+  }
   void vector(const Key& key, Vec3& value, const Limits&) override { line(key, vector_text(value)); }
   void vector(const Key& key, std::optional<Vec3>& value, const Limits&) override {
     if (value) line(key, vector_text(*value));
@@ -146,6 +149,9 @@ class ReferenceWriter final : public SchemaVisitor {
   void required_text(const Key& key, std::string&) override { row(key, "text", "**required**"); }
   void choice(const Key& key, std::string& value, const std::vector<std::string_view>& choices) override {
     row(key, fmt::format("`{}`", fmt::join(choices, "` `")), toml_string(value));
+  }
+  void choice(const Key& key, std::optional<std::string>&, const std::vector<std::string_view>& choices) override {
+    row(key, fmt::format("`{}`", fmt::join(choices, "` `")), "");
   }
   void vector(const Key& key, Vec3& value, const Limits& limits) override {
     row(key, "three numbers, " + limits_text(limits),

@@ -50,6 +50,7 @@ class SchemaVisitor {
   /// A text that may be left out; empty then.
   virtual void optional_text(const Key& key, std::string& value) = 0;
   virtual void choice(const Key& key, std::string& value, const std::vector<std::string_view>& choices) = 0;
+  virtual void choice(const Key& key, std::optional<std::string>& value, const std::vector<std::string_view>& choices) = 0;
   virtual void vector(const Key& key, Vec3& value, const Limits& limits) = 0;
   virtual void vector(const Key& key, std::optional<Vec3>& value, const Limits& limits) = 0;
   /// A number, or { first = , second = } for the two ends of a range.
