@@ -13,9 +13,11 @@
 #include <CLI/CLI.hpp>
 #include <tbb/global_control.h>
 
+#include <charconv>
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <tuple>
 
 namespace smelt {
 
@@ -29,6 +31,11 @@ struct SceneOptions {
   std::vector<std::string> overrides;
   int threads = 0;
   bool resume = false;
+  std::string look = "beauty";
+  std::string colour_by;
+  std::string colour_range;
+  std::string overlay;
+  std::string sheet;
 };
 
 /// oneTBB, and Embree through it, use this many threads while the object lives.
@@ -45,13 +52,49 @@ void print_summary(const RunSummary& s) {
   stage("simulate", s.simulate_seconds);
   stage("surface", s.surface_seconds);
   stage("render", s.render_seconds);
+  if (s.sheet) fmt::print("sheet     {}\n", s.sheet->string());
   if (s.film) fmt::print("film      {}\n", s.film->string());
+}
+
+/// Reads "A<separator>B", both numbers of type T.
+template <typename T>
+std::pair<T, T> parse_pair(const char* option, const std::string& text, char separator, const char* form) {
+  const std::size_t at = text.find(separator, 1);
+  std::pair<T, T> value{};
+  const auto read = [](std::string_view part, T& number) {
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), number);
+    return error == std::errc() && end == part.data() + part.size();
+  };
+  const std::string_view whole = text;
+  if (at == std::string::npos || !read(whole.substr(0, at), value.first) || !read(whole.substr(at + 1), value.second))
+    fail("{} {}: must be {}", option, text, form);
+  return value;
+}
+
+PictureRequest to_request(const SceneOptions& o) {
+  PictureRequest request;
+  request.diagnostic = o.look == "diagnostic";
+  for (const auto& [given, option] : {std::pair{!o.colour_by.empty(), "--colour-by"}, std::pair{!o.colour_range.empty(), "--colour-range"},
+                                      std::pair{!o.overlay.empty(), "--surface"}})
+    if (given && !request.diagnostic) fail("{} goes with --look diagnostic alone", option);
+  if (!o.colour_by.empty()) request.colour_by = o.colour_by;
+  if (!o.overlay.empty()) request.overlay = o.overlay;
+  if (!o.colour_range.empty()) {
+    request.range = parse_pair<double>("--colour-range", o.colour_range, ':', "LOW:HIGH, two numbers");
+    if (!(request.range->first < request.range->second)) fail("--colour-range {}: LOW must be below HIGH", o.colour_range);
+  }
+  if (!o.sheet.empty()) {
+    std::tie(request.sheet_columns, request.sheet_rows) = parse_pair<int>("--sheet", o.sheet, 'x', "COLUMNSxROWS, such as 4x3");
+    if (request.sheet_columns < 1 || request.sheet_rows < 1 || request.sheet_columns > 32 || request.sheet_rows > 64)
+      fail("--sheet {}: must be 1x1 to 32x64", o.sheet);
+  }
+  return request;
 }
 
 void run_on_scene(const SceneOptions& o, const std::function<RunSummary(const Scene&, const RunOptions&, Progress&)>& work) {
   const Scene scene = read_scene(o.scene, o.overrides);
   const auto threads = limit_threads(o.threads);
-  RunOptions options{o.folder, std::nullopt, o.resume};
+  RunOptions options{o.folder, std::nullopt, o.resume, to_request(o)};
   if (!o.frames.empty()) options.frames = parse_frame_range(o.frames, scene.shot.frames);
   RunSummary summary;
   {
@@ -112,6 +155,15 @@ void add_bench(CLI::App& app, BenchOptions& o, std::function<void()>& work) {
   add("terms", "what each term of a scene costs", print_terms_bench);
 }
 
+void add_picture_options(CLI::App& command, SceneOptions& o) {
+  command.add_option("--look", o.look, "the scene's pictures, or particles as coloured spheres")->check(CLI::IsMember({"beauty", "diagnostic"}));
+  command.add_option("--colour-by", o.colour_by, "with --look diagnostic; by default temperature")
+      ->check(CLI::IsMember({"temperature", "viscosity", "density", "speed", "pressure"}));
+  command.add_option("--colour-range", o.colour_range, "LOW:HIGH of the colours; by default what the frames hold");
+  command.add_option("--surface", o.overlay, "with --look diagnostic, over the particles")->check(CLI::IsMember({"none", "wire", "translucent"}));
+  command.add_option("--sheet", o.sheet, "COLUMNSxROWS: a contact sheet of frames evenly spread over the range");
+}
+
 int run_parsed(int argc, char** argv) {
   CLI::App app("smelt: melts, sags, oozes and flows meshes as viscoplastic fluids", "smelt");
   app.set_version_flag("--version", std::string(version));
@@ -132,6 +184,7 @@ int run_parsed(int argc, char** argv) {
       run_on_scene(o, [stage](const Scene& s, const RunOptions& r, Progress& p) { return run_stage(s, stage, r, p); });
     });
     add_scene_options(*command, o, true);
+    if (stage == Stage::render) add_picture_options(*command, o);
   };
   add_stage("simulate", "particles only", Stage::simulate);
   add_stage("surface", "surfaces of the particles in the folder", Stage::surface);

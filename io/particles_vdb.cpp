@@ -45,6 +45,16 @@ void check_sizes(const ParticleFrame& p) {
   CHECK_EQ(p.id.size(), p.size());
   if (!p.temperature.empty()) CHECK_EQ(p.temperature.size(), p.size());
   if (!p.viscosity.empty()) CHECK_EQ(p.viscosity.size(), p.size());
+  if (!p.rest.empty()) CHECK_EQ(p.rest.size(), p.size());
+}
+
+/// OpenVDB's vectors, in another order.
+std::vector<openvdb::Vec3f> to_vdb_vectors(const std::vector<Vec3f>& values, const std::vector<std::size_t>& order) {
+  std::vector<openvdb::Vec3f> result;
+  result.reserve(values.size());
+  if (!values.empty())
+    for (const std::size_t i : order) result.emplace_back(values[i].x(), values[i].y(), values[i].z());
+  return result;
 }
 
 /// World positions; refuses those that a voxel index cannot hold.
@@ -169,14 +179,11 @@ void write_particles(const std::filesystem::path& path, const ParticleFrame& par
   add_metadata(*grid, particles);
 
   // The other attributes.
-  std::vector<openvdb::Vec3f> velocity;
-  velocity.reserve(particles.size());
-  for (const std::size_t i : order)
-    velocity.emplace_back(particles.velocity[i].x(), particles.velocity[i].y(), particles.velocity[i].z());
-  add_attribute(grid->tree(), index_grid->tree(), "v", velocity);
+  add_attribute(grid->tree(), index_grid->tree(), "v", to_vdb_vectors(particles.velocity, order));
   add_attribute(grid->tree(), index_grid->tree(), "density", permuted(particles.density, order));
   add_attribute(grid->tree(), index_grid->tree(), "temperature", permuted(particles.temperature, order));
   add_attribute(grid->tree(), index_grid->tree(), "viscosity", permuted(particles.viscosity, order));
+  add_attribute(grid->tree(), index_grid->tree(), "rest", to_vdb_vectors(particles.rest, order));
   add_attribute(grid->tree(), index_grid->tree(), "id", permuted(particles.id, order));
 
   write_vdb(path, {grid});
@@ -210,9 +217,15 @@ ParticleFrame read_particles(const std::filesystem::path& path) {
   if (const auto twin = std::adjacent_find(p.id.begin(), p.id.end()); twin != p.id.end())
     fail("{}: two points have the id {}; the file is damaged, write it again", path.string(), *twin);
   p.position = permuted(read_positions(*grid, leaves, first_of_leaf, path), order);
-  for (const openvdb::Vec3f& v :
-       permuted(read_attribute<openvdb::Vec3f>(leaves, first_of_leaf, "v", true, path), order))
-    p.velocity.emplace_back(v.x(), v.y(), v.z());
+  const auto read_vectors = [&](const std::string& name, bool required) {
+    std::vector<Vec3f> values;
+    for (const openvdb::Vec3f& v :
+         permuted(read_attribute<openvdb::Vec3f>(leaves, first_of_leaf, name, required, path), order))
+      values.emplace_back(v.x(), v.y(), v.z());
+    return values;
+  };
+  p.velocity = read_vectors("v", true);
+  p.rest = read_vectors("rest", false);
   const auto read_floats = [&](const std::string& name, bool required) {
     return permuted(read_attribute<float>(leaves, first_of_leaf, name, required, path), order);
   };

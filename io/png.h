@@ -12,6 +12,9 @@ namespace smelt {
 /// written.
 void write_png(const std::filesystem::path& path, const ImageRgb8& image);
 
+/// The same with 16 bits a channel.
+void write_png(const std::filesystem::path& path, const ImageRgb16& image);
+
 /// Reads any PNG as 8-bit RGB; transparency is dropped. Throws Error naming the file if it is missing or no sound PNG.
 ImageRgb8 read_png(const std::filesystem::path& path);
 

@@ -115,6 +115,7 @@ void write_surface_vdb(const std::filesystem::path& path, const SurfaceMesh& sur
     add(make_field<openvdb::FloatGrid>(band, surface.mesh, surface.temperature), "temperature");
   if (!surface.viscosity.empty())
     add(make_field<openvdb::FloatGrid>(band, surface.mesh, surface.viscosity), "viscosity");
+  if (!surface.rest.empty()) add(make_field<openvdb::Vec3SGrid>(band, surface.mesh, surface.rest), "rest");
 
   for (const auto& grid : grids) {
     grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_size));
@@ -130,12 +131,18 @@ SurfaceMesh read_surface(const std::filesystem::path& obj_path, const std::files
   const openvdb::GridPtrVec grids = read_vdb(vdb_path);
   const auto velocity = find_grid<openvdb::Vec3SGrid>(grids, "v");
   if (!velocity) fail("{}: has no vector grid `v`; only surface files written by smelt can be read", vdb_path.string());
-  for (const openvdb::Vec3f& v : sample_at_vertices(*velocity, surface.mesh, vdb_path))
-    surface.velocity.emplace_back(v.x(), v.y(), v.z());
+  const auto vectors_of = [&](const openvdb::Vec3SGrid& grid) {
+    std::vector<Vec3f> values;
+    for (const openvdb::Vec3f& v : sample_at_vertices(grid, surface.mesh, vdb_path))
+      values.emplace_back(v.x(), v.y(), v.z());
+    return values;
+  };
+  surface.velocity = vectors_of(*velocity);
   if (const auto grid = find_grid<openvdb::FloatGrid>(grids, "temperature"))
     surface.temperature = sample_at_vertices(*grid, surface.mesh, vdb_path);
   if (const auto grid = find_grid<openvdb::FloatGrid>(grids, "viscosity"))
     surface.viscosity = sample_at_vertices(*grid, surface.mesh, vdb_path);
+  if (const auto grid = find_grid<openvdb::Vec3SGrid>(grids, "rest")) surface.rest = vectors_of(*grid);
   return surface;
 }
 

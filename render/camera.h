@@ -2,6 +2,7 @@
 // From pixels to rays.
 
 #include "core/geometry/vec.h"
+#include "render/sampling.h"
 #include "render/scene_view.h"
 
 #include <Eigen/Geometry>
@@ -27,6 +28,8 @@ struct CameraFrame {
     pixels_per_x = half_height_ / tan_half;
     right = forward.cross(camera.up).normalized();
     up = right.cross(forward);
+    lens_radius_ = static_cast<float>(0.5 * camera.aperture);
+    focus_ = static_cast<float>(camera.focus_distance > 0.0 ? camera.focus_distance : (camera.target - camera.eye).norm());
   }
 
   /// Unit direction through the point (x, y) of the picture in pixels from the top left corner; a pixel's centre is at
@@ -36,8 +39,23 @@ struct CameraFrame {
     return d.normalized().cast<float>();
   }
 
+  /// A ray through a point of the lens, relative to the eye; `direction` is that through the middle of the lens. Rays of
+  /// one `direction` meet on the plane that is sharp.
+  struct LensRay {
+    Vec3f origin, direction;
+  };
+  LensRay through_lens(const Vec3f& direction, Sample2 on_lens) const {
+    if (lens_radius_ <= 0.0f) return {Vec3f::Zero(), direction};
+    const Sample2 d = sample_disk(on_lens);
+    const Vec3f origin = lens_radius_ * (d.u * right.cast<float>() + d.v * up.cast<float>());
+    const Vec3f sharp = direction * (focus_ / direction.dot(forward.cast<float>()));
+    return {origin, (sharp - origin).normalized()};
+  }
+
  private:
   double half_width_, half_height_;
+  float lens_radius_ = 0.0f;  ///< [m]
+  float focus_ = 1.0f;        ///< [m]
 };
 
 }  // namespace smelt

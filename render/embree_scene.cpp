@@ -34,20 +34,45 @@ EmbreeScene::~EmbreeScene() {
   if (handles_->device != nullptr) rtcReleaseDevice(handles_->device);
 }
 
-int EmbreeScene::add_mesh(const TriangleMesh& mesh, const Vec3& origin) {
+int EmbreeScene::add_mesh(const TriangleMesh& mesh, const Vec3& origin, std::span<const Vec3f> velocity, float shutter) {
   const int number = handles_->n_meshes++;
   if (mesh.triangles.empty()) return number;
   RTCGeometry geometry = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                               3 * sizeof(float), mesh.vertices.size()));
+  const bool moving = shutter > 0.0f && !velocity.empty();
+  rtcSetGeometryTimeStepCount(geometry, moving ? 2 : 1);
+  for (unsigned step = 0; step < (moving ? 2u : 1u); ++step) {
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3,
+                                                                 3 * sizeof(float), mesh.vertices.size()));
+    handles_->check("copying a mesh");
+    const float time = moving ? (static_cast<float>(step) - 0.5f) * shutter : 0.0f;
+    for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+      for (int i = 0; i < 3; ++i) {
+        const auto at_rest = static_cast<float>(mesh.vertices[v][i] - origin[i]);
+        *vertices++ = moving ? at_rest + velocity[v][i] * time : at_rest;
+      }
+  }
   auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
   handles_->check("copying a mesh");
-  for (const Vec3& vertex : mesh.vertices) {
-    for (int i = 0; i < 3; ++i) *vertices++ = static_cast<float>(vertex[i] - origin[i]);
-  }
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t index : triangle) *indices++ = index;
+  }
+  rtcCommitGeometry(geometry);
+  rtcAttachGeometryByID(handles_->scene, geometry, static_cast<unsigned>(number));
+  rtcReleaseGeometry(geometry);
+  return number;
+}
+
+int EmbreeScene::add_spheres(std::span<const Vec3> centres, double radius, const Vec3& origin) {
+  const int number = handles_->n_meshes++;
+  if (centres.empty()) return number;
+  RTCGeometry geometry = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
+  auto* spheres = static_cast<float*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), centres.size()));
+  handles_->check("copying particles");
+  for (const Vec3& centre : centres) {
+    for (int i = 0; i < 3; ++i) *spheres++ = static_cast<float>(centre[i] - origin[i]);
+    *spheres++ = static_cast<float>(radius);
   }
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(handles_->scene, geometry, static_cast<unsigned>(number));
@@ -79,7 +104,7 @@ bool load(const RayPacket& rays, RTCRay8& out, std::array<int, packet_size>& val
     out.dir_z[i] = ray.direction.z();
     out.tnear[i] = ray.t_near;
     out.tfar[i] = ray.t_far;
-    out.time[i] = 0.0f;
+    out.time[i] = ray.time;
     out.mask[i] = ~0U;
     out.id[i] = 0;
     out.flags[i] = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// Rays against triangles, eight at a time.
+// Rays against triangles and spheres, eight at a time.
 
 #include "core/geometry/triangle_mesh.h"
 #include "core/geometry/vec.h"
@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 
 namespace smelt {
 
@@ -19,6 +20,7 @@ struct Ray {
   Vec3f direction = Vec3f::UnitY();
   float t_near = 0.0f;
   float t_far = std::numeric_limits<float>::infinity();
+  float time = 0.5f;    ///< when, within the shutter's time: 0 at its start, 1 at its end
   bool active = false;  ///< inactive rays hit nothing
   bool meshes = true;   ///< false: known to miss all meshes
 };
@@ -44,8 +46,11 @@ class EmbreeScene {
   EmbreeScene& operator=(const EmbreeScene&) = delete;
 
   /// Adds a copy of the mesh, moved by -origin [m] (rays live in floats, so keep them near zero). Returns its number,
-  /// counted from 0. An empty mesh takes a number too.
-  int add_mesh(const TriangleMesh& mesh, const Vec3& origin);
+  /// counted from 0. An empty mesh takes a number too. While the shutter is open, for `shutter` [s], vertices move with
+  /// their `velocity` [m/s] (empty: they stand still), and are half-way where the mesh says.
+  int add_mesh(const TriangleMesh& mesh, const Vec3& origin, std::span<const Vec3f> velocity = {}, float shutter = 0.0f);
+  /// Adds spheres of one radius [m], moved by -origin. A hit's `triangle` is the number of its sphere.
+  int add_spheres(std::span<const Vec3> centres, double radius, const Vec3& origin);
   /// Builds the hierarchy.
   void commit();
 

@@ -1,28 +1,39 @@
 #include "render/integrator.h"
 
-#include "render/sky.h"
+#include "render/film.h"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace smelt {
 
 namespace {
 
-/// Which pair of random numbers serves which decision (0 is the place in the pixel, drawn by the caller).
+/// Which pair of random numbers serves which decision at the first surface.
 enum Dimension : std::uint32_t {
-  dim_scatter = 1,
+  dim_scatter = first_surface_dimension,
   dim_scatter_choice,
   dim_lamp,
   dim_lamp_choice,
   dim_bounce,
-  dim_bounce_light,
   dim_coat_lamp,
   dim_coat,
-  dim_coat_bounce,
-  dim_coat_choice
+  dim_coat_choice,
+  dim_lobe,
+  first_body_path = 16,   ///< bounces that begin at the body
+  first_coat_path = 112,  ///< and at the coat
 };
+
+/// The same after the first surface, counted from the start of a bounce.
+enum BounceDimension : std::uint32_t {
+  dim_bounce_light,
+  dim_bounce_choice,
+  dim_bounce_direction,
+  dim_bounce_fate,
+  dims_per_bounce,
+};
+
+enum class Lobe : std::uint8_t { none, body, coat };
 
 using ColourPacket = std::array<Vec3f, packet_size>;
 using Samples = std::span<const CameraSample>;
@@ -47,42 +58,225 @@ Ray ray_from(const ShadingScene& scene, const SurfacePoint& point, const Vec3f& 
 
 constexpr float far_away = std::numeric_limits<float>::infinity();
 
-/// Radiance that arrives along the rays: `miss` where they meet nothing, otherwise the surface's diffuse light,
-/// estimated from a lamp or from the sky with equal chance.
-ColourPacket arriving_radiance(const ShadingScene& scene, const RayPacket& rays, const ColourPacket& miss,
-                               Samples samples, Dimension where, Dimension choice) {
-  const SurfacePacket points = scene.intersect(rays);
-  ColourPacket result = miss;
-  ColourPacket sent = black();
-  RayPacket shadow;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const SurfacePoint& point = points[i];
-    if (!rays[i].active || point.kind == SurfaceKind::none) continue;
-    // A floor faded away shows the sky's edge in reflections, as the backdrop does to the camera.
-    result[i] = sky_radiance(scene.view().sky, rays[i].direction) * point.fade;
-    if (point.fade >= 1.0f) continue;
-    const Vec3f weight = point.albedo * (2.0f * (1.0f - point.fade));
-    const Sample2 place = samples[i].sampler.draw(where);
-    const Sample2 which = samples[i].sampler.draw(choice);
-    if (which.v < 0.5f && !scene.lamps().empty()) {
-      const LightSample light = sample_lights(scene.lamps(), point.position, place, which.u);
-      const float cos_in = point.normal.dot(light.direction);
-      if (light.pdf <= 0.0f || cos_in <= 0.0f) continue;
-      sent[i] = weight.cwiseProduct(light.radiance) * (cos_in / (pi_f * light.pdf));
-      shadow[i] = ray_from(scene, point, light.direction, light.distance * 0.999f);
-    } else {
-      const Vec3f direction = Frame(point.normal).to_world(sample_cosine_hemisphere(place));
-      const float share = scene.lamps().empty() ? 0.5f : 1.0f;
-      sent[i] = weight.cwiseProduct(sky_radiance(scene.view().sky, direction)) * share;
-      shadow[i] = ray_from(scene, point, direction, far_away);
+/// One vertex of a path: light drawn there, and the ray that goes on. What either brings is multiplied by its weight.
+struct Vertex {
+  Vec3f direct = Vec3f::Zero();  ///< from a light, if `shadow` meets nothing
+  Ray shadow;
+  Vec3f weight = Vec3f::Zero();  ///< of what `ray` brings
+  Ray ray;
+  float pdf = 0.0f;  ///< [1/sr] of the ray's direction
+};
+using VertexPacket = std::array<Vertex, packet_size>;
+
+RayPacket rays_of(const VertexPacket& vertices, Ray Vertex::*ray) {
+  RayPacket rays;
+  for (std::size_t i = 0; i < packet_size; ++i) rays[i] = vertices[i].*ray;
+  return rays;
+}
+
+void aim_at_light(const ShadingScene& scene, const SurfacePoint& point, const LightSample& light, float time, Vertex& vertex) {
+  vertex.shadow = ray_from(scene, point, light.direction, light.distance * 0.999f);
+  vertex.shadow.time = time;
+}
+
+/// A white diffusing body; `share(cosine)` is what of the light from there comes through its coat.
+template <typename Share>
+void scatter_diffuse(const ShadingScene& scene, const SurfacePoint& point, float time, const Share& share, Sample2 at_light,
+                     float which_light, Sample2 direction, Vertex& vertex) {
+  if (scene.lights().any()) {
+    const LightSample light = scene.sample_light(point.position, at_light, which_light);
+    const float cos_in = point.normal.dot(light.direction);
+    if (light.pdf > 0.0f && cos_in > 0.0f) {
+      const float chance = power_heuristic(light.pdf, cos_in / pi_f);
+      vertex.direct = light.radiance * (cos_in * share(cos_in) * chance / (pi_f * light.pdf));
+      aim_at_light(scene, point, light, time, vertex);
     }
   }
-  const auto blocked = scene.occluded(shadow);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (shadow[i].active && !blocked[i]) result[i] += sent[i];
-  }
-  return result;
+  const Vec3f local = sample_cosine_hemisphere(direction);
+  vertex.weight = Vec3f::Constant(share(local.z()));
+  vertex.ray = ray_from(scene, point, Frame(point.normal).to_world(local), far_away);
+  vertex.ray.time = time;
+  vertex.pdf = local.z() / pi_f;
 }
+
+/// What a mirroring surface does to light, but for the shape of its lobe: Fresnel's share, and more for metals.
+class Mirror {
+ public:
+  Mirror(const ShadingScene& scene, const SurfacePoint& point, float cos_out) : metal_(point.metal), ior_(scene.view().look.ior) {
+    if (metal_) {
+      f0_ = point.albedo;
+      scale_ = multiple_scattering(scene.mirror_albedo(), f0_, cos_out, point.roughness);
+    } else {
+      scale_ = Vec3f::Constant(point.specular);
+    }
+  }
+  Vec3f operator()(float cosine) const {
+    return metal_ ? Vec3f(scale_.cwiseProduct(fresnel_metal(f0_, cosine))) : Vec3f(scale_ * fresnel_dielectric(cosine, ior_));
+  }
+
+ private:
+  bool metal_;
+  float ior_;
+  Vec3f f0_ = Vec3f::Zero(), scale_;
+};
+
+/// A coat or a metal, seen from `view` (unit, towards the eye).
+void scatter_mirror(const ShadingScene& scene, const SurfacePoint& point, const Vec3f& view, float time, Sample2 at_light,
+                    float which_light, Sample2 direction, Vertex& vertex) {
+  const Frame frame(point.normal);
+  Vec3f wo = frame.to_local(view);
+  // Interpolated normals may lean away from the eye at silhouettes: such points are seen edge on.
+  wo.z() = std::max(wo.z(), 1e-3f);
+  wo.normalize();
+  const float alpha = ggx_alpha(point.roughness);
+  const Mirror mirror(scene, point, wo.z());
+  if (scene.lights().any()) {
+    const LightSample light = scene.sample_light(point.position, at_light, which_light);
+    const Vec3f to_light = frame.to_local(light.direction);
+    if (light.pdf > 0.0f && to_light.z() > 0.0f) {
+      const float chance = power_heuristic(light.pdf, ggx_reflection_pdf(to_light, wo, alpha));
+      const float lobe = ggx_mirror(to_light, wo, alpha) * to_light.z() * chance / light.pdf;
+      vertex.direct = light.radiance.cwiseProduct(mirror((to_light + wo).normalized().dot(wo))) * lobe;
+      aim_at_light(scene, point, light, time, vertex);
+    }
+  }
+  const Vec3f half = sample_ggx_visible_normal(wo, alpha, direction);
+  const Vec3f wi = half * (2.0f * half.dot(wo)) - wo;
+  if (wi.z() <= 0.0f) return;
+  const float masking = 1.0f + ggx_lambda(wo, alpha);
+  vertex.weight = mirror(half.dot(wo)) * (masking / (masking + ggx_lambda(wi, alpha)));
+  vertex.ray = ray_from(scene, point, frame.to_world(wi), far_away);
+  vertex.ray.time = time;
+  vertex.pdf = ggx_reflection_pdf(wi, wo, alpha);
+}
+
+/// The last surface of a path: one light, or one ray to the sky, which the lights leave out.
+void end_at_surface(const ShadingScene& scene, const SurfacePoint& point, float time, Sample2 where, Sample2 which,
+                    Vertex& vertex) {
+  const bool lit = scene.lights().any(), sky = scene.lights().has_sky();
+  const float to_light = lit ? (sky ? 0.5f : 1.0f) : 0.0f;
+  if (which.v < to_light) {
+    const LightSample light = scene.sample_light(point.position, where, which.u);
+    const float cos_in = point.normal.dot(light.direction);
+    if (light.pdf <= 0.0f || cos_in <= 0.0f) return;
+    vertex.direct = light.radiance * (cos_in / (pi_f * light.pdf * to_light));
+    aim_at_light(scene, point, light, time, vertex);
+  } else if (sky) {
+    const Vec3f direction = Frame(point.normal).to_world(sample_cosine_hemisphere(where));
+    vertex.direct = scene.lights().sky(direction) / (1.0f - to_light);
+    vertex.shadow = ray_from(scene, point, direction, far_away);
+    vertex.shadow.time = time;
+  }
+}
+
+/// Emission of the surface that a ray from `origin` met, weighed against the chance to draw it as a light.
+Vec3f met_emission(const ShadingScene& scene, const Ray& ray, const SurfacePoint& point, float pdf) {
+  if (point.emission.isZero(0.0f) || point.kind != SurfaceKind::fluid) return point.emission;
+  const float cosine = -point.geometric_normal.dot(ray.direction);
+  return point.emission * power_heuristic(pdf, scene.lights().glow_pdf(ray.origin, point.triangle, point.t, cosine));
+}
+
+/// Follows one path past its first surface.
+class PathPacket {
+ public:
+  PathPacket(const ShadingScene& scene, Samples samples, const PathOptions& options, const VertexPacket& vertices,
+             const std::array<std::uint32_t, packet_size>& first_dimension)
+      : scene_(scene), samples_(samples), options_(options), first_dimension_(first_dimension), vertices_(vertices) {
+    radiance_ = black();
+    throughput_ = black();
+    for (std::size_t i = 0; i < samples.size(); ++i) throughput_[i] = vertices_[i].weight;
+  }
+
+  /// Radiance that the vertices' rays bring, weighed.
+  const ColourPacket& trace() {
+    for (int bounce = 1;; ++bounce) {
+      const bool last = bounce == options_.n_bounces;
+      if (!meet_surfaces(bounce, last)) return radiance_;
+      const auto blocked = scene_.occluded(rays_of(vertices_, &Vertex::shadow));
+      for (std::size_t i = 0; i < samples_.size(); ++i)
+        if (vertices_[i].shadow.active && !blocked[i]) radiance_[i] += carried_[i].cwiseProduct(vertices_[i].direct);
+      if (last) return radiance_;
+    }
+  }
+
+ private:
+  /// Adds what the rays meet, and makes those surfaces the new vertices; false where none is left.
+  bool meet_surfaces(int bounce, bool last) {
+    RayPacket rays = rays_of(vertices_, &Vertex::ray);
+    std::array<LampHit, packet_size> lamps;
+    bool any = false;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      if (!rays[i].active) continue;
+      any = true;
+      lamps[i] = scene_.lights().nearest_lamp(rays[i].origin, rays[i].direction, vertices_[i].pdf);
+      rays[i].t_far = lamps[i].distance;
+    }
+    if (!any) return false;
+    const SurfacePacket points = scene_.intersect(rays);
+    any = false;
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      const float pdf = vertices_[i].pdf;
+      vertices_[i] = {};
+      if (!rays[i].active) continue;
+      if (points[i].kind == SurfaceKind::none) {
+        const Vec3f arriving = lamps[i].distance < far_away
+                                   ? lamps[i].radiance
+                                   : scene_.lights().far_radiance(rays[i].origin, rays[i].direction, pdf);
+        radiance_[i] += throughput_[i].cwiseProduct(arriving);
+        continue;
+      }
+      // A floor faded away shows the sky's edge in reflections, as the backdrop does to the camera.
+      const SurfacePoint& point = points[i];
+      Vec3f seen = met_emission(scene_, rays[i], point, pdf);
+      if (point.fade > 0.0f) seen += scene_.lights().far_radiance(rays[i].origin, rays[i].direction, pdf) * point.fade;
+      radiance_[i] += throughput_[i].cwiseProduct(seen);
+      if (point.fade >= 1.0f) continue;
+      throughput_[i] *= 1.0f - point.fade;
+      leave_surface(i, rays[i], point, bounce, last);
+      any = true;
+    }
+    return any;
+  }
+
+  void leave_surface(std::size_t i, const Ray& ray, const SurfacePoint& point, int bounce, bool last) {
+    const PixelSampler& random = samples_[i].sampler;
+    const std::uint32_t first = first_dimension_[i] + static_cast<std::uint32_t>(bounce - 1) * dims_per_bounce;
+    const Sample2 where = random.draw(first + dim_bounce_light), which = random.draw(first + dim_bounce_choice);
+    Vertex& vertex = vertices_[i];
+    if (last && !point.metal) {
+      end_at_surface(scene_, point, ray.time, where, which, vertex);
+      carried_[i] = throughput_[i].cwiseProduct(point.albedo);
+      return;
+    }
+    const Sample2 direction = random.draw(first + dim_bounce_direction);
+    Vec3f colour = Vec3f::Ones();
+    if (point.metal) {
+      scatter_mirror(scene_, point, -ray.direction, ray.time, where, which.u, direction, vertex);
+    } else {
+      scatter_diffuse(scene_, point, ray.time, [](float) { return 1.0f; }, where, which.u, direction, vertex);
+      colour = point.albedo;
+    }
+    carried_[i] = throughput_[i].cwiseProduct(colour);
+    throughput_[i] = carried_[i].cwiseProduct(vertex.weight);
+    if (bounce >= 2) play_roulette(i, random.draw(first + dim_bounce_fate).u);
+  }
+
+  /// Ends dim paths by chance; those that survive stand for them.
+  void play_roulette(std::size_t i, float fate) {
+    const float chance = std::clamp(throughput_[i].maxCoeff(), 0.05f, 1.0f);
+    if (fate < chance)
+      throughput_[i] /= chance;
+    else
+      vertices_[i].ray.active = false;
+  }
+
+  const ShadingScene& scene_;
+  Samples samples_;
+  const PathOptions& options_;
+  const std::array<std::uint32_t, packet_size>& first_dimension_;
+  VertexPacket vertices_;
+  ColourPacket throughput_, carried_, radiance_;
+};
 
 /// Where the light that leaves at a point has entered, and what colour of it survives the way.
 struct Entry {
@@ -101,7 +295,8 @@ Vec3f profile_weight(const Vec3f& distance, float widest, float r) {
 /// diffusion profile's tail, halved as half of the light turns back.
 constexpr float crossing_reach = 4.0f;
 
-std::array<Entry, packet_size> scatter_inside(const ShadingScene& scene, const SurfacePacket& points, Samples samples) {
+std::array<Entry, packet_size> scatter_inside(const ShadingScene& scene, const SurfacePacket& points,
+                                              const std::array<Lobe, packet_size>& lobes, Samples samples) {
   std::array<Entry, packet_size> entries;
   RayPacket probes;
   std::array<float, packet_size> fate{};
@@ -110,6 +305,7 @@ std::array<Entry, packet_size> scatter_inside(const ShadingScene& scene, const S
   const float widest_tint = tint.maxCoeff();
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const SurfacePoint& point = points[i];
+    if (lobes[i] != Lobe::body) continue;
     entries[i].point = point;
     if (point.scatter <= 0.0f) continue;
     const Sample2 choice = samples[i].sampler.draw(dim_scatter_choice);
@@ -118,6 +314,7 @@ std::array<Entry, packet_size> scatter_inside(const ShadingScene& scene, const S
     const float widest = point.scatter * widest_tint;
     if (crossing[i]) {
       probes[i] = ray_from(scene, point, -point.normal, -crossing_reach * widest * std::log(std::max(fate[i], 1e-6f)));
+      probes[i].time = samples[i].time;
       continue;
     }
     const Sample2 s = samples[i].sampler.draw(dim_scatter);
@@ -130,6 +327,7 @@ std::array<Entry, packet_size> scatter_inside(const ShadingScene& scene, const S
                    point.normal * r;
     probe.direction = -point.normal;
     probe.t_far = 2.0f * r;
+    probe.time = samples[i].time;
     probe.active = r > scene.ray_offset();
     probes[i] = probe;
   }
@@ -151,143 +349,151 @@ std::array<Entry, packet_size> scatter_inside(const ShadingScene& scene, const S
   return entries;
 }
 
-/// `light` of the samples: direct from the lamps and from everything around, at the points where light enters.
-void add_diffuse(const ShadingScene& scene, const SurfacePacket& points, Samples samples,
-                 std::array<SampleRadiance, packet_size>& result) {
-  const std::array<Entry, packet_size> entries = scatter_inside(scene, points, samples);
-  RayPacket shadow, bounce;
-  ColourPacket direct = black(), weight = black(), sky = black();
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const SurfacePoint& point = points[i];
-    if (point.kind == SurfaceKind::none || point.fade >= 1.0f) continue;
-    const SurfacePoint& entry = entries[i].point;
-    const PixelSampler& random = samples[i].sampler;
-    const float cos_out = std::max(0.0f, -point.normal.dot(samples[i].direction));
-    const CoatedDiffuse diffuse(scene.coat_albedo(), cos_out, point.specular, point.roughness);
-
-    const LightSample light =
-        sample_lights(scene.lamps(), entry.position, random.draw(dim_lamp), random.draw(dim_lamp_choice).u);
-    const float cos_in = entry.normal.dot(light.direction);
-    if (light.pdf > 0.0f && cos_in > 0.0f) {
-      direct[i] = entries[i].weight.cwiseProduct(light.radiance) *
-                  (cos_in * diffuse(scene.coat_albedo(), cos_in) / (pi_f * light.pdf));
-      shadow[i] = ray_from(scene, entry, light.direction, light.distance * 0.999f);
-    }
-    const Vec3f local = sample_cosine_hemisphere(random.draw(dim_bounce));
-    const Vec3f direction = Frame(entry.normal).to_world(local);
-    weight[i] = entries[i].weight * diffuse(scene.coat_albedo(), local.z());
-    bounce[i] = ray_from(scene, entry, direction, far_away);
-    sky[i] = sky_radiance(scene.view().sky, direction);
-  }
-  const auto blocked = scene.occluded(shadow);
-  const ColourPacket arriving = arriving_radiance(scene, bounce, sky, samples, dim_bounce_light, dim_lamp_choice);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (!bounce[i].active) continue;
-    result[i].light = weight[i].cwiseProduct(arriving[i]);
-    if (shadow[i].active && !blocked[i]) result[i].light += direct[i];
-  }
+/// Chance of the coat where a sample follows one lobe: its share of what is reflected, but never so small that highlights
+/// would be rare.
+float coat_chance(const ShadingScene& scene, const SurfacePoint& point, const Vec3f& direction) {
+  if (point.metal) return 1.0f;
+  if (point.specular <= 0.0f) return 0.0f;
+  const float cos_out = std::max(0.0f, -point.normal.dot(direction));
+  const float coat = point.specular * scene.coat_albedo()(cos_out, point.roughness);
+  return std::clamp(coat / (coat + (1.0f - coat) * point.albedo.maxCoeff()), 0.25f, 0.75f);
 }
 
-float power_heuristic(float mine, float other) {
-  return mine * mine / (mine * mine + other * other);
-}
-
-/// What a ray meets among the lamps: the nearest one.
-struct LampHit {
-  float distance = far_away;
-  Vec3f radiance = Vec3f::Zero();  ///< weighted against sample_lights' chance of the same direction
+/// Light that leaves the first surfaces by the lobes given, from a vertex there on.
+struct Bounced {
+  ColourPacket direct = black();
+  ColourPacket indirect = black();
 };
 
-LampHit nearest_lamp(const ShadingScene& scene, const Vec3f& origin, const Vec3f& direction, float pdf) {
-  LampHit nearest;
-  std::optional<std::size_t> which;
-  for (std::size_t i = 0; i < scene.lamps().size(); ++i) {
-    const auto t = intersect_lamp(scene.lamps()[i], origin, direction);
-    if (!t || *t >= nearest.distance) continue;
-    nearest.distance = *t;
-    which = i;
+class FirstSurface {
+ public:
+  FirstSurface(const ShadingScene& scene, const SurfacePacket& points, Samples samples, const PathOptions& options)
+      : scene_(scene), points_(points), samples_(samples), options_(options) {}
+
+  Bounced trace(const std::array<Lobe, packet_size>& lobes) const {
+    VertexPacket vertices;
+    std::array<std::uint32_t, packet_size> first_dimension{};
+    const std::array<Entry, packet_size> entries = scatter_inside(scene_, points_, lobes, samples_);
+    for (std::size_t i = 0; i < samples_.size(); ++i) {
+      first_dimension[i] = lobes[i] == Lobe::coat ? first_coat_path : first_body_path;
+      if (lobes[i] == Lobe::body) leave_body(i, entries[i], vertices[i]);
+      if (lobes[i] == Lobe::coat) leave_coat(i, vertices[i]);
+    }
+    Bounced bounced;
+    const auto blocked = scene_.occluded(rays_of(vertices, &Vertex::shadow));
+    for (std::size_t i = 0; i < samples_.size(); ++i)
+      if (vertices[i].shadow.active && !blocked[i]) bounced.direct[i] = vertices[i].direct;
+    bounced.indirect = PathPacket(scene_, samples_, options_, vertices, first_dimension).trace();
+    return bounced;
   }
-  if (which) {
-    const float other = light_pdf(scene.lamps(), *which, origin, direction, nearest.distance);
-    nearest.radiance = scene.lamps()[*which].radiance * power_heuristic(pdf, other);
+
+ private:
+  void leave_body(std::size_t i, const Entry& entry, Vertex& vertex) const {
+    const SurfacePoint& point = points_[i];
+    const PixelSampler& random = samples_[i].sampler;
+    const float cos_out = std::max(0.0f, -point.normal.dot(samples_[i].direction));
+    const CoatedDiffuse coated(scene_.coat_albedo(), cos_out, point.specular, point.roughness);
+    const auto share = [&](float cos_in) { return coated(scene_.coat_albedo(), cos_in); };
+    scatter_diffuse(scene_, entry.point, samples_[i].time, share, random.draw(dim_lamp), random.draw(dim_lamp_choice).u,
+                    random.draw(dim_bounce), vertex);
+    vertex.direct = vertex.direct.cwiseProduct(entry.weight);
+    vertex.weight = vertex.weight.cwiseProduct(entry.weight);
   }
-  return nearest;
+
+  void leave_coat(std::size_t i, Vertex& vertex) const {
+    const PixelSampler& random = samples_[i].sampler;
+    scatter_mirror(scene_, points_[i], -samples_[i].direction, samples_[i].time, random.draw(dim_coat_lamp),
+                   random.draw(dim_coat_choice).u, random.draw(dim_coat), vertex);
+  }
+
+  const ShadingScene& scene_;
+  const SurfacePacket& points_;
+  Samples samples_;
+  const PathOptions& options_;
+};
+
+/// Keeps what bounces bring below the limit; returns the luminance taken away.
+float limit_fireflies(Vec3f& radiance, float limit) {
+  const float l = luminance(radiance);
+  if (limit <= 0.0f || l <= limit) return 0.0f;
+  radiance *= limit / l;
+  return l - limit;
 }
 
-/// `specular` of the samples: what the coat mirrors.
-void add_coat(const ShadingScene& scene, const SurfacePacket& points, Samples samples,
-              std::array<SampleRadiance, packet_size>& result) {
-  RayPacket shadow, mirror;
-  ColourPacket direct = black(), miss = black();
-  std::array<float, packet_size> weight{};
-  const float ior = scene.view().look.ior;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const SurfacePoint& point = points[i];
-    if (point.specular <= 0.0f) continue;
-    const PixelSampler& random = samples[i].sampler;
-    const Frame frame(point.normal);
-    Vec3f wo = frame.to_local(-samples[i].direction);
-    // Interpolated normals may lean away from the eye at silhouettes: such points are seen edge on.
-    wo.z() = std::max(wo.z(), 1e-3f);
-    wo.normalize();
-    const float alpha = ggx_alpha(point.roughness);
-
-    const LightSample light =
-        sample_lights(scene.lamps(), point.position, random.draw(dim_coat_lamp), random.draw(dim_coat_choice).u);
-    const Vec3f to_lamp = frame.to_local(light.direction);
-    if (light.pdf > 0.0f && to_lamp.z() > 0.0f) {
-      const float chance = power_heuristic(light.pdf, ggx_reflection_pdf(to_lamp, wo, alpha));
-      const float reflection = ggx_reflection(to_lamp, wo, alpha, ior) * to_lamp.z();
-      direct[i] = light.radiance * (point.specular * reflection * chance / light.pdf);
-      shadow[i] = ray_from(scene, point, light.direction, light.distance * 0.999f);
-    }
-    const Vec3f half = sample_ggx_visible_normal(wo, alpha, random.draw(dim_coat));
-    const Vec3f wi = half * (2.0f * half.dot(wo)) - wo;
-    if (wi.z() <= 0.0f) continue;
-    const float masking = ggx_lambda(wo, alpha);
-    weight[i] = point.specular * fresnel_dielectric(half.dot(wo), ior) * (1.0f + masking) /
-                (1.0f + masking + ggx_lambda(wi, alpha));
-    const Vec3f direction = frame.to_world(wi);
-    const LampHit lamp = nearest_lamp(scene, point.position, direction, ggx_reflection_pdf(wi, wo, alpha));
-    miss[i] = lamp.distance < far_away ? lamp.radiance : sky_radiance(scene.view().sky, direction);
-    mirror[i] = ray_from(scene, point, direction, lamp.distance);
-  }
-  const auto blocked = scene.occluded(shadow);
-  const ColourPacket arriving = arriving_radiance(scene, mirror, miss, samples, dim_coat_bounce, dim_coat_choice);
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (mirror[i].active) result[i].specular = arriving[i] * weight[i];
-    if (shadow[i].active && !blocked[i]) result[i].specular += direct[i];
+/// Adds a lobe's light, which stands for `weight` of its kind, to the sample.
+void add_lobe(SampleRadiance& sample, Lobe lobe, const Vec3f& direct, Vec3f indirect, float weight, float limit) {
+  const float taken = limit_fireflies(indirect, limit);
+  const Vec3f sum = (direct + indirect) * weight;
+  if (lobe == Lobe::coat) {
+    sample.specular += sum;
+    sample.clamped += taken * weight;
+  } else {
+    sample.light += sum;
+    sample.clamped += taken * weight * luminance(sample.albedo);
   }
 }
 
 }  // namespace
 
-std::array<SampleRadiance, packet_size> trace_packet(const ShadingScene& scene, Samples samples) {
+std::array<SampleRadiance, packet_size> trace_packet(const ShadingScene& scene, Samples samples, const PathOptions& options) {
+  // What the camera sees.
   std::array<SampleRadiance, packet_size> result;
   RayPacket rays;
   for (std::size_t i = 0; i < samples.size(); ++i) {
+    rays[i].origin = samples[i].origin;
     rays[i].direction = samples[i].direction;
+    rays[i].time = samples[i].time;
     rays[i].active = true;
     rays[i].meshes = samples[i].meshes;
   }
   const SurfacePacket points = scene.intersect(rays, true);
+  std::array<Lobe, packet_size> bodies{}, coats{};
   bool any_coat = false;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const SurfacePoint& point = points[i];
-    const Vec3f backdrop = backdrop_radiance(scene.view().backdrop, samples[i].direction);
     result[i].kind = point.kind;
-    if (point.kind == SurfaceKind::none) {
-      result[i].emission = backdrop;
-      continue;
-    }
-    result[i].emission = backdrop * point.fade;
-    result[i].albedo = point.albedo * (1.0f - point.fade);
+    result[i].fade = point.kind == SurfaceKind::none ? 1.0f : point.fade;
+    if (result[i].fade > 0.0f) result[i].emission = scene.background(samples[i].direction) * result[i].fade;
+    if (point.kind == SurfaceKind::none) continue;
+    result[i].emission += point.emission;
+    result[i].colour = point.albedo;
+    if (!point.metal) result[i].albedo = point.albedo * (1.0f - point.fade);
     result[i].normal = point.normal;
     result[i].position = point.position;
-    any_coat = any_coat || point.specular > 0.0f;
+    result[i].velocity = point.velocity;
+    result[i].temperature = point.temperature;
+    if (point.fade >= 1.0f) continue;
+    if (!point.metal) bodies[i] = Lobe::body;
+    if (point.metal || point.specular > 0.0f) coats[i] = Lobe::coat;
+    any_coat = any_coat || coats[i] == Lobe::coat;
   }
-  add_diffuse(scene, points, samples, result);
-  if (any_coat) add_coat(scene, points, samples, result);
+
+  const FirstSurface surface(scene, points, samples, options);
+  if (options.both_lobes) {
+    const Bounced body = surface.trace(bodies);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      add_lobe(result[i], Lobe::body, body.direct[i], body.indirect[i], 1.0f, options.firefly_limit);
+    if (!any_coat) return result;
+    const Bounced coat = surface.trace(coats);
+    for (std::size_t i = 0; i < samples.size(); ++i)
+      add_lobe(result[i], Lobe::coat, coat.direct[i], coat.indirect[i], 1.0f, options.firefly_limit);
+    return result;
+  }
+
+  // One lobe a sample, which stands for both.
+  std::array<Lobe, packet_size> lobes = bodies;
+  std::array<float, packet_size> weight{};
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    weight[i] = 1.0f;
+    if (coats[i] == Lobe::none) continue;
+    const float chance = coat_chance(scene, points[i], samples[i].direction);
+    const bool coat = samples[i].sampler.draw(dim_lobe).u < chance;
+    if (coat) lobes[i] = Lobe::coat;
+    weight[i] = 1.0f / (coat ? chance : 1.0f - chance);
+  }
+  const Bounced bounced = surface.trace(lobes);
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    add_lobe(result[i], lobes[i], bounced.direct[i], bounced.indirect[i], weight[i], options.firefly_limit);
   return result;
 }
 

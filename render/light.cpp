@@ -7,24 +7,12 @@
 
 namespace smelt {
 
-namespace {
-
-/// What a lamp can send to a point, roughly: choosing by it costs no bias. Never zero on the lit side of any part of
-/// the lamp.
 float choice_weight(const LampGeometry& lamp, const Vec3f& point) {
   const Vec3f to_point = point - lamp.centre;
   const float d2 = to_point.squaredNorm() + 0.25f * lamp.area;
   const float facing = std::max(0.05f, to_point.dot(lamp.normal) / std::sqrt(d2));
   return lamp.radiance.sum() * lamp.area * facing / d2;
 }
-
-float total_weight(std::span<const LampGeometry> lamps, const Vec3f& point) {
-  float total = 0.0f;
-  for (const LampGeometry& lamp : lamps) total += choice_weight(lamp, point);
-  return total;
-}
-
-}  // namespace
 
 LampGeometry place_lamp(const AreaLight& light, const Vec3& origin) {
   const Vec3 normal = (light.target - light.position).normalized();
@@ -63,44 +51,6 @@ std::optional<float> intersect_lamp(const LampGeometry& lamp, const Vec3f& origi
       lamp.shape == LightShape::disk ? a * a + b * b <= 1.0f : std::abs(a) <= 1.0f && std::abs(b) <= 1.0f;
   if (!inside) return std::nullopt;
   return t;
-}
-
-LightSample sample_lights(std::span<const LampGeometry> lamps, const Vec3f& point, Sample2 where, float which) {
-  LightSample sample;
-  // One pass: each lamp displaces the one held so far with its share of the weight up to here.
-  const LampGeometry* chosen = nullptr;
-  float chosen_weight = 0.0f, total = 0.0f;
-  for (const LampGeometry& lamp : lamps) {
-    const float weight = choice_weight(lamp, point);
-    if (weight <= 0.0f) continue;
-    total += weight;
-    const float chance = weight / total;
-    if (which < chance) {
-      chosen = &lamp;
-      chosen_weight = weight;
-      which /= chance;
-    } else {
-      which = (which - chance) / (1.0f - chance);
-    }
-  }
-  if (chosen == nullptr) return sample;
-  const Vec3f to_lamp = sample_lamp(*chosen, where) - point;
-  sample.distance = to_lamp.norm();
-  if (sample.distance <= 0.0f) return sample;
-  sample.direction = to_lamp / sample.distance;
-  const float facing = -sample.direction.dot(chosen->normal);
-  if (facing <= 1e-6f) return sample;
-  sample.radiance = chosen->radiance;
-  sample.pdf = chosen_weight / total * sample.distance * sample.distance / (facing * chosen->area);
-  return sample;
-}
-
-float light_pdf(std::span<const LampGeometry> lamps, std::size_t i, const Vec3f& point, const Vec3f& direction,
-                float distance) {
-  const LampGeometry& lamp = lamps[i];
-  const float facing = -direction.dot(lamp.normal);
-  if (facing <= 1e-6f) return 0.0f;
-  return choice_weight(lamp, point) / total_weight(lamps, point) * distance * distance / (facing * lamp.area);
 }
 
 }  // namespace smelt

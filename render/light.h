@@ -1,12 +1,11 @@
 #pragma once
-// Area lights: points on them, what they send, how likely they are chosen.
+// Area lights: points on them, and rays that meet them.
 
 #include "core/geometry/vec.h"
 #include "render/sampling.h"
 #include "render/scene_view.h"
 
 #include <optional>
-#include <span>
 
 namespace smelt {
 
@@ -27,19 +26,8 @@ Vec3f sample_lamp(const LampGeometry& lamp, Sample2 s);
 /// Distance along the ray (unit `direction`) to the lamp's lit face, if the ray meets it.
 std::optional<float> intersect_lamp(const LampGeometry& lamp, const Vec3f& origin, const Vec3f& direction);
 
-/// A direction towards some lamp, seen from a point.
-struct LightSample {
-  Vec3f direction = Vec3f::UnitY();  ///< unit, towards the lamp
-  float distance = 0.0f;             ///< [m]
-  Vec3f radiance = Vec3f::Zero();    ///< zero: the lamp does not light this point
-  float pdf = 0.0f;                  ///< density of the direction over all lamps [1/sr]
-};
-
-/// Chooses one lamp, in proportion to what its centre would send unshadowed, and a point on it.
-LightSample sample_lights(std::span<const LampGeometry> lamps, const Vec3f& point, Sample2 where, float which);
-
-/// Density [1/sr] with which sample_lights, from `point`, yields the direction that meets lamp `i` at `distance`.
-float light_pdf(std::span<const LampGeometry> lamps, std::size_t i, const Vec3f& point, const Vec3f& direction,
-                float distance);
+/// What a lamp can send to a point, roughly: choosing by it costs no bias. Never zero on the lit side of any part of
+/// the lamp.
+float choice_weight(const LampGeometry& lamp, const Vec3f& point);
 
 }  // namespace smelt

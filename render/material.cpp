@@ -29,11 +29,25 @@ float ggx_lambda(const Vec3f& w, float alpha) {
   return 0.5f * (std::sqrt(1.0f + alpha * alpha * tan2) - 1.0f);
 }
 
-float ggx_reflection(const Vec3f& wi, const Vec3f& wo, float alpha, float ior) {
+float ggx_mirror(const Vec3f& wi, const Vec3f& wo, float alpha) {
   if (wi.z() <= 0.0f || wo.z() <= 0.0f) return 0.0f;
   const Vec3f half = (wi + wo).normalized();
   const float masking = 1.0f / (1.0f + ggx_lambda(wi, alpha) + ggx_lambda(wo, alpha));
-  return ggx_distribution(half, alpha) * masking * fresnel_dielectric(half.dot(wo), ior) / (4.0f * wi.z() * wo.z());
+  return ggx_distribution(half, alpha) * masking / (4.0f * wi.z() * wo.z());
+}
+
+float ggx_reflection(const Vec3f& wi, const Vec3f& wo, float alpha, float ior) {
+  return ggx_mirror(wi, wo, alpha) * fresnel_dielectric((wi + wo).normalized().dot(wo), ior);
+}
+
+Vec3f fresnel_metal(const Vec3f& f0, float cos_incident) {
+  const float c = 1.0f - std::clamp(cos_incident, 0.0f, 1.0f), c2 = c * c;
+  return f0 + (Vec3f::Ones() - f0) * (c2 * c2 * c);
+}
+
+Vec3f multiple_scattering(const CoatAlbedo& mirror, const Vec3f& f0, float cos_out, float roughness) {
+  const float e = mirror(cos_out, roughness);
+  return Vec3f::Ones() + f0 * ((1.0f - e) / e);
 }
 
 Vec3f sample_ggx_visible_normal(const Vec3f& wo, float alpha, Sample2 s) {
@@ -53,6 +67,17 @@ float ggx_reflection_pdf(const Vec3f& wi, const Vec3f& wo, float alpha) {
 }
 
 CoatAlbedo::CoatAlbedo(float ior) {
+  tabulate([ior](float cosine) { return fresnel_dielectric(cosine, ior); });
+}
+
+CoatAlbedo CoatAlbedo::perfect_mirror() {
+  CoatAlbedo albedo;
+  albedo.tabulate([](float) { return 1.0f; });
+  return albedo;
+}
+
+template <typename Fresnel>
+void CoatAlbedo::tabulate(const Fresnel& fresnel) {
   constexpr int n = 10;
   for (int r = 0; r < n_rough_; ++r) {
     const float alpha = ggx_alpha(static_cast<float>(r) / (n_rough_ - 1));
@@ -68,7 +93,7 @@ CoatAlbedo::CoatAlbedo(float ior) {
         if (wi.z() <= 0.0f) continue;
         const float lambda_out = ggx_lambda(wo, alpha);
         sum +=
-            fresnel_dielectric(half.dot(wo), ior) * (1.0f + lambda_out) / (1.0f + lambda_out + ggx_lambda(wi, alpha));
+            fresnel(half.dot(wo)) * (1.0f + lambda_out) / (1.0f + lambda_out + ggx_lambda(wi, alpha));
       }
       table_[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] = static_cast<float>(sum / (n * n));
     }

@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include <cmath>
+#include <cstdint>
 
 namespace smelt {
 
@@ -23,6 +24,8 @@ void check_surface(const SurfaceMesh& fluid) {
   };
   check_count("normals", fluid.normals.size());
   check_count("temperatures", fluid.temperature.size());
+  check_count("rest positions", fluid.rest.size());
+  check_count("velocities", fluid.velocity.size());
   for (std::size_t i = 0; i < n; ++i) {
     if (!fluid.mesh.vertices[i].allFinite())
       fail("surface: vertex {} is not finite; every coordinate must be a number", i);
@@ -34,10 +37,21 @@ void check_surface(const SurfaceMesh& fluid) {
   }
 }
 
+/// What the look wants to know of the surface.
+void check_attributes(const SurfaceMesh& fluid, const Look& look) {
+  if (fluid.mesh.vertices.empty()) return;
+  if (look.black_body && fluid.temperature.empty())
+    fail("look.black_body: the surface has no temperature to glow with; give the material `heat`, or leave this out");
+  if (look.crust && fluid.rest.empty())
+    fail("look.crust: the surface has no rest positions, which its pattern moves with; set particles.rest_position = true "
+         "and simulate again, or leave this out");
+}
+
 void check_options(const RenderOptions& options) {
   if (options.samples < 1 || options.samples > 4096) {
     fail("render: {} samples a pixel; choose 1 to 4096", options.samples);
   }
+  if (options.bounces < 1 || options.bounces > 24) fail("render: {} bounces; choose 1 to 24", options.bounces);
 }
 
 /// A camera in the fluid sees the backs of its triangles on most sides.
@@ -57,22 +71,22 @@ void check_eye_outside(const ShadingScene& scene) {
   }
   if (n_backs < 4) return;
   const Vec3& eye = scene.origin();
-  fail("camera.eye: ({:.3g}, {:.3g}, {:.3g}) is inside the fluid; move it out", eye.x(), eye.y(), eye.z());
+  fail("camera.eye_m: ({:.3g}, {:.3g}, {:.3g}) is inside the fluid; move it out", eye.x(), eye.y(), eye.z());
 }
 
-ImageRgb8 develop(const Film& film, double exposure) {
-  ImageRgb8 image{film.width, film.height, {}};
+/// Tone-maps every pixel; `quantize(display colour, x, y)` makes its numbers.
+template <typename Channel, typename Quantize>
+ImageRgb<Channel> develop(const Film& film, double exposure, ToneCurve curve, const Quantize& quantize) {
+  ImageRgb<Channel> image{film.width, film.height, {}};
   image.pixels.resize(film.size());
   const auto gain = static_cast<float>(exposure);
   const auto width = static_cast<std::size_t>(film.width);
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, film.size(), 8192),
                     [&](const tbb::blocked_range<std::size_t>& pixels) {
                       for (std::size_t i = pixels.begin(); i < pixels.end(); ++i) {
-                        const Vec3f radiance = read_pixel(film.albedo, i).cwiseProduct(read_pixel(film.light, i)) +
-                                               read_pixel(film.specular, i) + read_pixel(film.emission, i);
-                        const PixelSampler random(static_cast<int>(i % width), static_cast<int>(i / width), 0, 1, 0);
-                        const Sample2 s = random.draw(0);
-                        image.pixels[i] = quantize_srgb(tone_map_neutral(radiance * gain), s.u + s.v - 1.0f);
+                        const Vec3f exposed = radiance_at(film, i) * gain;
+                        const Vec3f shown = curve == ToneCurve::film ? tone_map_film(exposed) : tone_map_neutral(exposed);
+                        image.pixels[i] = quantize(shown, static_cast<int>(i % width), static_cast<int>(i / width));
                       }
                     });
   return image;
@@ -80,14 +94,70 @@ ImageRgb8 develop(const Film& film, double exposure) {
 
 }  // namespace
 
-ImageRgb8 render_frame(const SurfaceMesh& fluid, const RenderScene& scene, const RenderOptions& options,
-                       std::int32_t frame) {
+Vec3f radiance_at(const Film& film, std::size_t pixel) {
+  return read_pixel(film.albedo, pixel).cwiseProduct(read_pixel(film.light, pixel)) + read_pixel(film.specular, pixel) +
+         read_pixel(film.emission, pixel);
+}
+
+ImageRgb8 develop8(const Film& film, double exposure, ToneCurve curve) {
+  return develop<std::uint8_t>(film, exposure, curve, [](const Vec3f& colour, int x, int y) {
+    const Sample2 s = PixelSampler(x, y, 0, 1, 0).draw(0);
+    return quantize_srgb(colour, s.u + s.v - 1.0f);
+  });
+}
+
+ImageRgb16 develop16(const Film& film, double exposure, ToneCurve curve) {
+  return develop<std::uint16_t>(film, exposure, curve, [](const Vec3f& colour, int, int) { return quantize_srgb16(colour); });
+}
+
+LayeredImage to_layers(const Film& film, const Vec3& eye) {
+  CHECK(film.layers.has_value());
+  LayeredImage image{film.width, film.height, {}};
+  const auto add = [&](const char* name, const auto& value_of) {
+    ImageChannel& channel = image.channels.emplace_back(ImageChannel{name, std::vector<float>(film.size())});
+    for (std::size_t i = 0; i < film.size(); ++i) channel.values[i] = value_of(i);
+  };
+  const auto plane = [](const Plane& values) { return [&values](std::size_t i) { return values[i]; }; };
+  for (int c = 0; c < 3; ++c) add(c == 0 ? "R" : c == 1 ? "G" : "B", [&](std::size_t i) { return radiance_at(film, i)[c]; });
+  add("A", plane(film.layers->alpha));
+  const auto add_colour = [&](const char* r, const char* g, const char* b, const Plane3& planes) {
+    add(r, plane(planes[0]));
+    add(g, plane(planes[1]));
+    add(b, plane(planes[2]));
+  };
+  add_colour("albedo.R", "albedo.G", "albedo.B", film.layers->colour);
+  add("depth.Z", plane(film.layers->depth));
+  add_colour("normal.X", "normal.Y", "normal.Z", film.normal);
+  for (std::size_t a = 0; a < 3; ++a)
+    add(a == 0 ? "position.X" : a == 1 ? "position.Y" : "position.Z", [&](std::size_t i) {
+      const bool there = film.layers->depth[i] != 0.0f;
+      return there ? static_cast<float>(film.layers->position[a][i] + eye[static_cast<int>(a)]) : 0.0f;
+    });
+  add("temperature.T", plane(film.layers->temperature));
+  add_colour("velocity.X", "velocity.Y", "velocity.Z", film.layers->velocity);
+  return image;
+}
+
+double clamped_share(const Film& film) {
+  double taken = 0.0, left = 0.0;
+  for (std::size_t i = 0; i < film.size(); ++i) {
+    taken += film.clamped[i];
+    left += luminance(radiance_at(film, i));
+  }
+  return taken > 0.0 ? taken / (taken + left) : 0.0;
+}
+
+Film render_film(const SurfaceMesh& fluid, const RenderScene& scene, const RenderOptions& options, std::int32_t frame) {
   check_scene(scene);
   check_options(options);
   check_surface(fluid);
+  check_attributes(fluid, scene.look);
   const ShadingScene shading(fluid, scene);
   check_eye_outside(shading);
-  Film film = sample_film(shading, options, frame);
+  // The limit is meant as displayed.
+  RenderOptions exposed = options;
+  exposed.firefly_limit = options.firefly_limit / static_cast<float>(scene.exposure);
+  Film film = sample_film(shading, exposed, frame);
   if (options.denoise) {
     const auto pixels_per_radian = static_cast<float>(CameraFrame(scene.camera).pixels_per_x);
     denoise(film.light, film.light_variance, film, film.albedo[1], pixels_per_radian, {});
@@ -95,7 +165,12 @@ ImageRgb8 render_frame(const SurfaceMesh& fluid, const RenderScene& scene, const
     const DenoiseOptions sharp{.n_levels = 4, .luminance_sigmas = 4.0f, .normal_width = 0.15f};
     denoise(film.specular, film.specular_variance, film, film.kind, pixels_per_radian, sharp);
   }
-  return develop(film, scene.exposure);
+  return film;
+}
+
+ImageRgb8 render_frame(const SurfaceMesh& fluid, const RenderScene& scene, const RenderOptions& options,
+                       std::int32_t frame) {
+  return develop8(render_film(fluid, scene, options, frame), scene.exposure);
 }
 
 }  // namespace smelt

@@ -100,6 +100,9 @@ bool shows_mesh(const std::vector<Glimpse>& glimpses, const Film& film, const Ti
 struct PixelSums {
   Vec3f light = Vec3f::Zero(), lit_albedo = Vec3f::Zero(), albedo = Vec3f::Zero(), specular = Vec3f::Zero();
   Vec3f emission = Vec3f::Zero(), normal = Vec3f::Zero(), position = Vec3f::Zero();
+  Vec3f velocity = Vec3f::Zero(), colour = Vec3f::Zero();
+  float alpha = 0.0f, depth = 0.0f, temperature = 0.0f, clamped = 0.0f;
+  int n_deep = 0, n_warm = 0;
   float kind = 0.0f, light2 = 0.0f, specular1 = 0.0f, specular2 = 0.0f, light1 = 0.0f;
 
   void add(const SampleRadiance& s) {
@@ -116,6 +119,19 @@ struct PixelSums {
     light2 += l * l;
     specular1 += m;
     specular2 += m * m;
+    clamped += s.clamped;
+  }
+
+  void add_layers(const SampleRadiance& s, const Vec3f& forward) {
+    alpha += 1.0f - s.fade;
+    if (s.kind == SurfaceKind::none) return;
+    depth += s.position.dot(forward);
+    ++n_deep;
+    velocity += s.velocity;
+    colour += s.colour;
+    if (std::isnan(s.temperature)) return;
+    temperature += s.temperature;
+    ++n_warm;
   }
 
   void write(Film& film, std::size_t i, int n) const {
@@ -131,6 +147,15 @@ struct PixelSums {
     write_pixel(film.normal, i, normal * per_n);
     write_pixel(film.position, i, position * per_n);
     film.kind[i] = kind * per_n;
+    film.clamped[i] = clamped * per_n;
+    if (film.layers) {
+      film.layers->alpha[i] = alpha * per_n;
+      if (n_deep > 0) film.layers->depth[i] = depth / static_cast<float>(n_deep);
+      if (n_deep > 0) write_pixel(film.layers->position, i, position / static_cast<float>(n_deep));
+      if (n_warm > 0) film.layers->temperature[i] = temperature / static_cast<float>(n_warm);
+      write_pixel(film.layers->velocity, i, velocity * per_n);
+      write_pixel(film.layers->colour, i, colour * per_n);
+    }
     // One sample knows nothing of its error: as uncertain as it is bright.
     const auto variance = [n, per_n](float sum, float sum2) {
       if (n == 1) return sum * sum;
@@ -144,8 +169,13 @@ struct PixelSums {
 /// The samples of one tile, traced packet by packet in a fixed order.
 class TileTracer {
  public:
-  TileTracer(const ShadingScene& scene, const CameraFrame& camera, std::uint32_t seed)
-      : scene_(scene), camera_(camera), seed_(seed) {}
+  TileTracer(const ShadingScene& scene, const CameraFrame& camera, const RenderOptions& options, std::uint32_t seed)
+      : scene_(scene),
+        camera_(camera),
+        options_(options),
+        path_{options.bounces, options.firefly_limit, options.samples < least_silhouette_samples},
+        blurred_(scene.view().camera.aperture > 0.0 || scene.view().camera.shutter > 0.0),
+        seed_(seed) {}
 
   /// `meshes`: whether any mesh can be in the pixel.
   void add_pixel(std::size_t index, int x, int y, int n_samples, bool meshes) {
@@ -153,8 +183,14 @@ class TileTracer {
     for (int s = 0; s < n_samples; ++s) {
       CameraSample sample;
       sample.sampler = PixelSampler(x, y, s, n_samples, seed_);
-      const Sample2 place = n_samples == 1 ? Sample2{0.5f, 0.5f} : sample.sampler.draw(0);
+      const Sample2 place = n_samples == 1 ? Sample2{0.5f, 0.5f} : sample.sampler.draw(dim_pixel);
       sample.direction = camera_.direction(x + static_cast<double>(place.u), y + static_cast<double>(place.v));
+      if (blurred_) {
+        const auto ray = camera_.through_lens(sample.direction, sample.sampler.draw(dim_lens));
+        sample.origin = ray.origin;
+        sample.direction = ray.direction;
+        sample.time = sample.sampler.draw(dim_time).u;
+      }
       sample.meshes = meshes;
       packet_[n_waiting_] = sample;
       owner_[n_waiting_] = pixels_.size() - 1;
@@ -176,13 +212,19 @@ class TileTracer {
 
   void flush() {
     if (n_waiting_ == 0) return;
-    const auto seen = trace_packet(scene_, std::span(packet_).first(n_waiting_));
-    for (std::size_t i = 0; i < n_waiting_; ++i) pixels_[owner_[i]].sums.add(seen[i]);
+    const auto seen = trace_packet(scene_, std::span(packet_).first(n_waiting_), path_);
+    for (std::size_t i = 0; i < n_waiting_; ++i) {
+      pixels_[owner_[i]].sums.add(seen[i]);
+      if (options_.layers) pixels_[owner_[i]].sums.add_layers(seen[i], camera_.forward.cast<float>());
+    }
     n_waiting_ = 0;
   }
 
   const ShadingScene& scene_;
   const CameraFrame& camera_;
+  const RenderOptions& options_;
+  PathOptions path_;
+  bool blurred_;  ///< by lens or motion
   std::uint32_t seed_;
   std::vector<Pixel> pixels_;
   std::array<CameraSample, packet_size> packet_;
@@ -194,24 +236,27 @@ class TileTracer {
 
 Film sample_film(const ShadingScene& scene, const RenderOptions& options, std::int32_t frame) {
   const CameraFrame camera(scene.view().camera);
-  Film film(scene.view().camera.width, scene.view().camera.height);
+  Film film(scene.view().camera.width, scene.view().camera.height, options.layers);
   const std::vector<Glimpse> glimpses = glance(scene, camera, film);
   const float pixel_angle = 1.0f / static_cast<float>(camera.pixels_per_x);
   const std::uint32_t seed =
       options.moving_noise ? hash_combine(options.seed, static_cast<std::uint32_t>(frame)) : hash_u32(options.seed);
+  // Out of focus or moving, things show where a sharp ray through the pixel misses them.
+  const bool blurred = scene.view().camera.aperture > 0.0 || scene.view().camera.shutter > 0.0;
   for_each_tile(film, [&](const Tile& tile) {
-    TileTracer tracer(scene, camera, seed);
-    const bool any_mesh = shows_mesh(glimpses, film, tile);
+    TileTracer tracer(scene, camera, options, seed);
+    const bool any_mesh = blurred || shows_mesh(glimpses, film, tile);
     for (int y = tile.rows().begin(); y < tile.rows().end(); ++y) {
       for (int x = tile.cols().begin(); x < tile.cols().end(); ++x) {
         const std::size_t i = film.index(x, y);
         const Glimpse& seen = glimpses[i];
         const bool bare = seen.kind == SurfaceKind::none || seen.fade >= 1.0f;
         if (!any_mesh && bare) {
-          write_pixel(film.emission, i, backdrop_radiance(scene.view().backdrop, camera.direction(x + 0.5, y + 0.5)));
+          write_pixel(film.emission, i, scene.background(camera.direction(x + 0.5, y + 0.5)));
         } else {
-          const int n = any_mesh ? samples_at(glimpses, film, x, y, pixel_angle, options.samples)
-                                 : plain_samples(seen, options.samples);
+          const int n = blurred    ? options.samples
+                        : any_mesh ? samples_at(glimpses, film, x, y, pixel_angle, options.samples)
+                                   : plain_samples(seen, options.samples);
           tracer.add_pixel(i, x, y, n, any_mesh);
         }
       }

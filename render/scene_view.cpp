@@ -12,9 +12,6 @@ namespace smelt {
 
 namespace {
 
-/// 7680 x 4320: what film work asks for at most.
-constexpr std::int64_t max_pixels = 7680LL * 4320LL;
-
 std::string text(const Vec3& v) {
   return fmt::format("({:.4g}, {:.4g}, {:.4g})", v.x(), v.y(), v.z());
 }
@@ -41,11 +38,11 @@ void check_range(const std::string& key, double value, double lower, double uppe
 }
 
 void check_camera(const Camera& camera, const Ground& ground) {
-  check_point("camera.eye", camera.eye);
-  check_point("camera.target", camera.target);
+  check_point("camera.eye_m", camera.eye);
+  check_point("camera.target_m", camera.target);
   const Vec3 view = camera.target - camera.eye;
   if (view.norm() < 1e-9)
-    fail("camera.target: {} is the eye itself; choose another point to look at", text(camera.target));
+    fail("camera.target_m: {} is the eye itself; choose another point to look at", text(camera.target));
   if (!camera.up.allFinite() || view.normalized().cross(camera.up.stableNormalized()).norm() < 1e-6) {
     fail("camera.up: {} lies along the view; choose another direction", text(camera.up));
   }
@@ -54,22 +51,25 @@ void check_camera(const Camera& camera, const Ground& ground) {
     fail("camera: {} x {} pixels; width and height are at least 1", camera.width, camera.height);
   }
   const std::int64_t n = static_cast<std::int64_t>(camera.width) * camera.height;
-  if (n > max_pixels || camera.width > 65535 || camera.height > 65535) {
+  if (n > max_picture_pixels || camera.width > 65535 || camera.height > 65535) {
     fail("camera: {} x {} pixels would take {:.1f} GB of memory; at most {} pixels in all and 65535 a side are drawn",
          camera.width, camera.height, static_cast<double>(n) * static_cast<double>(film_bytes_per_pixel) * 1e-9,
-         max_pixels);
+         max_picture_pixels);
   }
+  check_range("camera.aperture", camera.aperture, 0.0, 1e6);
+  check_range("camera.focus_distance_m", camera.focus_distance, 0.0, 1e12);
+  check_range("camera.shutter", camera.shutter, 0.0, 1e12);
   if (ground.enabled && camera.eye.y() <= ground.height) {
-    fail("camera.eye: {} is below the floor at y = {:.4g}; raise it, or switch the floor off", text(camera.eye),
+    fail("camera.eye_m: {} is below the floor at y = {:.4g}; raise it, or switch the floor off", text(camera.eye),
          ground.height);
   }
 }
 
 void check_light(const std::string& key, const AreaLight& light) {
-  check_point(key + ".position", light.position);
-  check_point(key + ".target", light.target);
+  check_point(key + ".position_m", light.position);
+  check_point(key + ".target_m", light.target);
   if ((light.target - light.position).norm() < 1e-9) {
-    fail("{}.target: {} is the lamp itself; choose the point it faces", key, text(light.target));
+    fail("{}.target_m: {} is the lamp itself; choose the point it faces", key, text(light.target));
   }
   const bool rectangle = light.shape == LightShape::rectangle;
   if (!(light.width > 0.0 && std::isfinite(light.width)) ||
@@ -80,7 +80,7 @@ void check_light(const std::string& key, const AreaLight& light) {
 }
 
 void check_wax(const std::string& key, const Wax& wax) {
-  check_albedo(key + ".base_colour", wax.base_colour);
+  check_albedo(key + ".colour", wax.base_colour);
   check_range(key + ".roughness", wax.roughness, 0.01, 1.0);
   check_range(key + ".scatter_m", wax.scatter_m, 0.0, 1e3);
 }
@@ -93,9 +93,36 @@ void check_look(const Look& look) {
   }
   check_range("look.specular", look.specular, 0.0, 1.0);
   check_range("look.ior", look.ior, 1.01, 4.0);
+  if (look.black_body) {
+    check_range("look.black_body.emissivity", look.black_body->emissivity, 1e-6, 1.0);
+    check_range("look.black_body.white_cd_m2", look.black_body->white_cd_m2, 1e-6, 1e12);
+  }
+  if (look.crust) {
+    check_range("look.crust.plate_m", look.crust->plate_m, 1e-6, 1e9);
+    check_range("look.crust.crack", look.crust->crack, 1e-4, 0.5);
+    check_range("look.crust.cooler_K", look.crust->cooler_K, 0.0, 1e4);
+    check_range("look.crust.relief", look.crust->relief, 0.0, 2.0);
+  }
   if (!(look.cold_K < look.hot_K) || !std::isfinite(look.hot_K) || !std::isfinite(look.cold_K)) {
     fail("look: cold_K = {:.4g}, hot_K = {:.4g}; cold_K must be below hot_K", look.cold_K, look.hot_K);
   }
+}
+
+void check_far_light(const RenderScene& scene) {
+  check_radiance("sky.zenith", scene.sky.zenith);
+  check_radiance("sky.horizon", scene.sky.horizon);
+  check_radiance("sky.ground", scene.sky.ground);
+  if (scene.sun) {
+    check_radiance("sun.radiance", scene.sun->radiance);
+    check_range("sun.angular_radius_deg", scene.sun->angular_radius_deg, 1e-3, 10.0);
+    if (!(scene.sun->direction.norm() > 0.0)) fail("sun.direction: {} points nowhere", text(scene.sun->direction));
+  }
+  if (!scene.environment) return;
+  const RadianceImage* image = scene.environment->image.get();
+  if (image == nullptr || image->width < 1 || image->height < 1 ||
+      image->pixels.size() != static_cast<std::size_t>(image->width) * static_cast<std::size_t>(image->height))
+    fail("environment.image: has no pixels, or not as many as its size says");
+  check_range("environment.strength", scene.environment->strength, 0.0, 1e9);
 }
 
 void check_ground(const Ground& ground) {
@@ -115,6 +142,10 @@ void check_collider(const std::string& key, const ColliderView& collider) {
   if (!collider.normals.empty() && collider.normals.size() != n) {
     fail("{}: {} normals for {} vertices; give one per vertex or none", key, collider.normals.size(), n);
   }
+  if (!collider.velocity.empty() && collider.velocity.size() != n)
+    fail("{}: {} velocities for {} vertices; give one per vertex or none", key, collider.velocity.size(), n);
+  check_range(key + ".roughness", collider.roughness, 0.01, 1.0);
+  check_range(key + ".specular", collider.specular, 0.0, 1.0);
   for (const Vec3& vertex : collider.mesh.vertices) check_point(key + ": vertex", vertex);
   for (const auto& triangle : collider.mesh.triangles) {
     for (const std::uint32_t index : triangle) {
@@ -127,10 +158,8 @@ void check_collider(const std::string& key, const ColliderView& collider) {
 
 void check_scene(const RenderScene& scene) {
   check_camera(scene.camera, scene.ground);
-  for (std::size_t i = 0; i < scene.lights.size(); ++i) check_light(fmt::format("light[{}]", i), scene.lights[i]);
-  check_radiance("sky.zenith", scene.sky.zenith);
-  check_radiance("sky.horizon", scene.sky.horizon);
-  check_radiance("sky.ground", scene.sky.ground);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) check_light(fmt::format("light.{}", i), scene.lights[i]);
+  check_far_light(scene);
   check_radiance("backdrop.low", scene.backdrop.low);
   check_radiance("backdrop.high", scene.backdrop.high);
   check_range("backdrop.low_deg", scene.backdrop.low_deg, -90.0, 90.0);
@@ -142,7 +171,7 @@ void check_scene(const RenderScene& scene) {
   check_look(scene.look);
   check_ground(scene.ground);
   for (std::size_t i = 0; i < scene.colliders.size(); ++i)
-    check_collider(fmt::format("collider[{}]", i), scene.colliders[i]);
+    check_collider(fmt::format("collider.{}", i), scene.colliders[i]);
   if (!(scene.exposure > 0.0 && std::isfinite(scene.exposure)))
     fail("exposure: {}; it is a factor above zero", scene.exposure);
 }

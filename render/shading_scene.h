@@ -3,13 +3,14 @@
 
 #include "core/geometry/surface_mesh.h"
 #include "render/embree_scene.h"
-#include "render/light.h"
+#include "render/black_body.h"
+#include "render/light_set.h"
 #include "render/material.h"
 #include "render/scene_view.h"
 
 #include <array>
 #include <cstdint>
-#include <span>
+#include <limits>
 #include <vector>
 
 namespace smelt {
@@ -28,6 +29,11 @@ struct SurfacePoint {
   float specular = 0.0f;  ///< 0: no coat
   float scatter = 0.0f;   ///< [m]
   float fade = 0.0f;      ///< of the floor into the backdrop: 0 floor, 1 backdrop
+  bool metal = false;     ///< mirrors with reflectance `albedo`, and has no body
+  Vec3f emission = Vec3f::Zero();  ///< radiance of its own
+  float temperature = std::numeric_limits<float>::quiet_NaN();  ///< of its skin [K]; not a number where unknown
+  Vec3f velocity = Vec3f::Zero();                               ///< [m/s]
+  std::uint32_t triangle = 0;                                   ///< of the fluid or the collider
 };
 
 using SurfacePacket = std::array<SurfacePoint, packet_size>;
@@ -39,18 +45,23 @@ class ShadingScene {
   /// The scene must have passed check_scene and the mesh check_surface.
   ShadingScene(const SurfaceMesh& fluid, const RenderScene& scene);
 
-  /// Nearest surfaces along the rays.
+  /// Nearest surfaces along the rays; `coherent`: the rays run side by side from the camera, and see relief.
   SurfacePacket intersect(const RayPacket& rays, bool coherent = false) const;
   /// Nearest triangles alone, floor left out.
   HitPacket intersect_meshes(const RayPacket& rays) const { return embree_.intersect(rays); }
   /// Whether anything blocks each ray.
   std::array<bool, packet_size> occluded(const RayPacket& rays) const;
-  /// The surface at a mesh hit.
-  SurfacePoint resolve(const Ray& ray, const RayHit& hit) const;
+  /// The surface at a mesh hit; `relief`: with the normal that a crust's relief gives it.
+  SurfacePoint resolve(const Ray& ray, const RayHit& hit, bool relief = false) const;
+  /// A light's direction as seen from a surface, with what it sends.
+  LightSample sample_light(const Vec3f& point, Sample2 where, float which) const;
+  /// Radiance that the camera sees behind everything.
+  Vec3f background(const Vec3f& direction) const;
 
   const RenderScene& view() const { return scene_; }
-  std::span<const LampGeometry> lamps() const { return lamps_; }
+  const LightSet& lights() const { return lights_; }
   const CoatAlbedo& coat_albedo() const { return coat_albedo_; }
+  const CoatAlbedo& mirror_albedo() const { return mirror_albedo_; }
   /// How far ray origins are lifted off a surface [m].
   float ray_offset() const { return ray_offset_; }
   const Vec3& origin() const { return origin_; }
@@ -58,6 +69,10 @@ class ShadingScene {
  private:
   SurfacePoint floor_point(const Ray& ray, float t) const;
   float floor_distance(const Ray& ray) const;
+  void shade_fluid(SurfacePoint& point, const MeshPoint& at, bool relief) const;
+  void raise_relief(SurfacePoint& point, const MeshPoint& at, float solid, float height) const;
+  Vec3f fluid_position(const MeshPoint& at) const;
+  GlowLight gather_glow() const;
 
   const SurfaceMesh& fluid_;
   const RenderScene& scene_;
@@ -66,8 +81,10 @@ class ShadingScene {
   Vec3f floor_centre_;
   float ray_offset_;
   EmbreeScene embree_;
-  std::vector<LampGeometry> lamps_;
+  BlackBodyTable black_body_;
+  LightSet lights_;
   CoatAlbedo coat_albedo_;
+  CoatAlbedo mirror_albedo_;
 };
 
 }  // namespace smelt

@@ -5,14 +5,28 @@
 
 namespace smelt {
 
+namespace {
+
+constexpr float start = 0.8f;         ///< below, colours are shown as they are
+constexpr float room = 1.0f - start;  ///< for everything brighter
+
+float shoulder(float x) {
+  return x < start ? x : 1.0f - room * room / (x + room - start);
+}
+
+}  // namespace
+
+Vec3f tone_map_film(const Vec3f& colour) {
+  const Vec3f c = colour.cwiseMax(0.0f);
+  return {shoulder(c.x()), shoulder(c.y()), shoulder(c.z())};
+}
+
 Vec3f tone_map_neutral(const Vec3f& colour) {
-  constexpr float start = 0.8f;
-  constexpr float room = 1.0f - start;
   constexpr float desaturation = 0.15f;
   const Vec3f c = colour.cwiseMax(0.0f);
   const float peak = c.maxCoeff();
   if (peak < start) return c;
-  const float new_peak = 1.0f - room * room / (peak + room - start);
+  const float new_peak = shoulder(peak);
   const float keep = 1.0f / (desaturation * (peak - new_peak) + 1.0f);
   return (c * (new_peak / peak * keep) + Vec3f::Constant(new_peak * (1.0f - keep))).cwiseMin(1.0f);
 }
@@ -32,6 +46,14 @@ std::array<std::uint8_t, 3> quantize_srgb(const Vec3f& colour, float dither) {
     bytes[static_cast<std::size_t>(i)] = static_cast<std::uint8_t>(std::clamp(level + 0.5f, 0.0f, 255.0f));
   }
   return bytes;
+}
+
+std::array<std::uint16_t, 3> quantize_srgb16(const Vec3f& colour) {
+  std::array<std::uint16_t, 3> values{};
+  for (int i = 0; i < 3; ++i)
+    values[static_cast<std::size_t>(i)] =
+        static_cast<std::uint16_t>(65535.0f * srgb_from_linear(std::clamp(colour[i], 0.0f, 1.0f)) + 0.5f);
+  return values;
 }
 
 }  // namespace smelt

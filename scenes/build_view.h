@@ -15,4 +15,7 @@ RenderScene build_view(const Scene& scene);
 void place_colliders(const Scene& scene, double time, const std::vector<BodyPose>& bodies,
                      const std::vector<ColliderView>& at_rest, RenderScene& view);
 
+/// Where the scene's keyframes put a camera that build_view() made at `time` [s]; that camera itself without keyframes.
+Camera camera_at(const Scene& scene, const Camera& camera, double time);
+
 }  // namespace smelt

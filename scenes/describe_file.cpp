@@ -33,7 +33,8 @@ std::string describe_particles(const std::filesystem::path& path) {
   return fmt::format("particles  {}\nframe      {} at {:.6g} s\nspacing    {:.6g} m, smoothing length {:.6g} m, mass {:.6g} kg each\n", p.size(),
                      p.frame, p.time, p.spacing, p.smoothing_length, p.mass) +
          describe_bounds(bounds) + describe_values("speed", "m/s", speed) + describe_values("density", "kg/m3", p.density) +
-         describe_values("temperature", "K", p.temperature) + describe_values("viscosity", "Pa s", p.viscosity);
+         describe_values("temperature", "K", p.temperature) + describe_values("viscosity", "Pa s", p.viscosity) +
+         (p.rest.empty() ? "" : "rest       where each particle was before it moved\n");
 }
 
 std::string describe_mesh(const std::filesystem::path& path) {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <string>
 
 namespace smelt {
 
@@ -23,6 +24,12 @@ struct OutputFolder {
   std::filesystem::path bodies(int frame) const { return bodies() / fmt::format("bodies.{:04}.json", frame); }
   std::filesystem::path surface_obj(int frame) const { return surfaces() / fmt::format("surface.{:04}.obj", frame); }
   std::filesystem::path surface_vdb(int frame) const { return surfaces() / fmt::format("surface.{:04}.vdb", frame); }
+  std::filesystem::path exr(int frame) const { return frames() / fmt::format("frame.{:04}.exr", frame); }
+  std::filesystem::path diagnostic(const std::string& colour_by, int frame) const {
+    return root / "diagnostic" / fmt::format("{}.{:04}.png", colour_by, frame);
+  }
+  std::filesystem::path sheet() const { return root / "sheet.png"; }
+  std::filesystem::path sheet(const std::string& colour_by) const { return root / fmt::format("sheet.{}.png", colour_by); }
   std::filesystem::path picture(int frame) const { return frames() / fmt::format("frame.{:04}.png", frame); }
 };
 

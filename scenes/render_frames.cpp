@@ -1,9 +1,11 @@
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "io/exr.h"
 #include "io/png.h"
 #include "io/surface_vdb.h"
 #include "render/render_frame.h"
 #include "scenes/build_view.h"
+#include "scenes/failed_frames.h"
 #include "scenes/stage_frames.h"
 #include "scenes/stages.h"
 
@@ -11,34 +13,61 @@
 
 namespace smelt {
 
+namespace {
+
+RenderOptions to_options(const RenderSettings& s) {
+  RenderOptions options;
+  options.samples = s.samples;
+  options.bounces = s.bounces;
+  options.firefly_limit = static_cast<float>(s.firefly_limit);
+  options.denoise = s.denoise;
+  options.seed = static_cast<std::uint32_t>(s.seed);
+  options.layers = s.exr;
+  return options;
+}
+
+bool is_done(const Scene& scene, const OutputFolder& folder, int frame) {
+  return all_exist({folder.picture(frame)}) && (!scene.render.exr || all_exist({folder.exr(frame)}));
+}
+
+/// The PNG last: where it is, the frame is whole.
+void write_pictures(const Scene& scene, const OutputFolder& folder, int frame, const Film& film, const Vec3& eye) {
+  const ToneCurve curve = scene.look.tone_curve.value_or(scene.look.material == "lava" ? "film" : "neutral") == "film" ? ToneCurve::film : ToneCurve::neutral;
+  if (scene.render.exr) write_exr(folder.exr(frame), to_layers(film, eye));
+  if (scene.render.png_bits == 16)
+    write_png(folder.picture(frame), develop16(film, scene.look.exposure, curve));
+  else
+    write_png(folder.picture(frame), develop8(film, scene.look.exposure, curve));
+}
+
+}  // namespace
+
 void render_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report, Progress& progress) {
   RenderScene view = build_view(scene);
+  const Camera camera = view.camera;
   const auto colliders_at_rest = view.colliders;
   const bool has_bodies =
       std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const ColliderSettings& c) { return c.rigid(); });
-  check_scene(view);
   create_directories_or_fail(folder.frames());
-  RenderOptions quality;
-  quality.samples = scene.render.samples;
-  quality.denoise = scene.render.denoise;
-  quality.seed = static_cast<std::uint32_t>(scene.render.seed);
+  const RenderOptions quality = to_options(scene.render);
+  FailedFrames failed("render", scene.file, progress);
   for (int frame = options.frames.first; frame <= options.frames.last; ++frame) {
-    const auto picture = folder.picture(frame);
     progress.update({"render", frame, options.frames.first, options.frames.last, 0.0, ""});
     stop_if_asked(progress, "render", frame);
-    if (options.resume && all_exist({picture})) continue;
-
-    const CostMeter meter;
-    const std::vector<BodyPose> bodies = has_bodies ? read_body_poses(folder.bodies(frame)) : std::vector<BodyPose>{};
-    place_colliders(scene, (frame - 1) / scene.shot.fps, bodies, colliders_at_rest, view);
-    const SurfaceMesh surface = read_surface(folder.surface_obj(frame), folder.surface_vdb(frame));
-    try {
-      write_png(picture, render_frame(surface, view, quality, frame));
-    } catch (const Error& error) {
-      fail("frame {}: {}", frame, error.what());
-    }
-    report.set_rendered(frame, meter.finish({picture}));
+    if (options.resume && is_done(scene, folder, frame)) continue;
+    failed.attempt(frame, [&] {
+      const CostMeter meter;
+      const double time = (frame - 1) / scene.shot.fps;
+      const std::vector<BodyPose> bodies = has_bodies ? read_body_poses(folder.bodies(frame)) : std::vector<BodyPose>{};
+      place_colliders(scene, time, bodies, colliders_at_rest, view);
+      view.camera = camera_at(scene, camera, time);
+      const SurfaceMesh surface = read_surface(folder.surface_obj(frame), folder.surface_vdb(frame));
+      const Film film = render_film(surface, view, quality, frame);
+      write_pictures(scene, folder, frame, film, view.camera.eye);
+      report.set_rendered(frame, clamped_share(film), meter.finish({folder.picture(frame)}));
+    });
   }
+  failed.throw_if_any();
 }
 
 }  // namespace smelt

@@ -127,8 +127,9 @@ void RunReport::set_surfaced(int frame, double volume, std::size_t n_vertices, s
   save();
 }
 
-void RunReport::set_rendered(int frame, const StageCost& cost) {
+void RunReport::set_rendered(int frame, double clamped_share, const StageCost& cost) {
   document_->frame(frame)["render"] = cost_json(cost);
+  document_->frame(frame)["render"]["clamped_share"] = clamped_share;
   save();
 }
 

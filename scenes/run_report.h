@@ -70,7 +70,8 @@ class RunReport {
                      const std::optional<MassAccount>& mass, const std::optional<HeatLedger>& heat, const std::vector<BodyPose>& bodies,
                      const StageCost& cost);
   void set_surfaced(int frame, double volume, std::size_t n_vertices, std::size_t n_triangles, const StageCost& cost);
-  void set_rendered(int frame, const StageCost& cost);
+  /// `clamped_share`: of the picture's light, what the firefly limit took away.
+  void set_rendered(int frame, double clamped_share, const StageCost& cost);
   void save();
 
  private:

@@ -62,6 +62,15 @@ Kept judge_kept(const OutputFolder& folder, const Scene& scene, bool resume) {
   return kept;
 }
 
+/// The pictures asked for: the scene's own or diagnostic ones; for a sheet only those on it.
+void draw_pictures(const Scene& scene, const OutputFolder& folder, const StageOptions& options, const PictureRequest& request, RunReport& report,
+                   Progress& progress) {
+  if (request.diagnostic) return diagnose_frames(scene, folder, options.frames, request, progress);
+  if (request.sheet_columns == 0) return render_frames(scene, folder, options, report, progress);
+  for (const int frame : choose_sheet_frames(options.frames, request.sheet_columns * request.sheet_rows))
+    render_frames(scene, folder, {{frame, frame}, options.resume}, report, progress);
+}
+
 }  // namespace
 
 FrameRange parse_frame_range(const std::string& text, int last) {
@@ -117,7 +126,8 @@ RunSummary run_stage(const Scene& scene, Stage stage, const RunOptions& options,
       summary.surface_seconds = timed([&] { surface_frames(scene, folder, {summary.frames, kept.surface}, report, progress); });
       break;
     case Stage::render:
-      summary.render_seconds = timed([&] { render_frames(scene, folder, {summary.frames, kept.render}, report, progress); });
+      summary.render_seconds = timed([&] { draw_pictures(scene, folder, {summary.frames, kept.render}, options.pictures, report, progress); });
+      if (options.pictures.sheet_columns > 0) summary.sheet = write_sheet(folder, summary.frames, options.pictures);
       break;
   }
   return summary;

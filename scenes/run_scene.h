@@ -13,6 +13,7 @@ struct RunOptions {
   std::filesystem::path folder;      ///< empty: out/<name of the shot>
   std::optional<FrameRange> frames;  ///< to make; all where not given
   bool resume = false;
+  PictureRequest pictures;           ///< for Stage::render
 };
 
 /// What a run made.
@@ -22,6 +23,7 @@ struct RunSummary {
   double simulate_seconds = 0.0;
   double surface_seconds = 0.0;
   double render_seconds = 0.0;
+  std::optional<std::filesystem::path> sheet = std::nullopt;
   std::optional<std::filesystem::path> film = std::nullopt;  ///< where ffmpeg is installed and all frames are there
 };
 

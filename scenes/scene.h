@@ -28,6 +28,7 @@ struct ParticleSettings {
   double jitter = 0.0;
   std::int64_t seed = 0;
   double smoothing_length_over_spacing = 1.2;
+  bool rest_position = false;
 };
 
 struct SolverSettings {
@@ -143,6 +144,8 @@ struct ColliderSettings {
   /// It has a mass: what it meets pushes it back.
   bool rigid() const { return mass || density; }
   Vec3 colour{0.35, 0.36, 0.38};
+  std::string material = "matte";
+  double roughness = 0.4;
 };
 
 /// A vent.
@@ -181,10 +184,25 @@ struct HeatSourceSettings {
   std::optional<double> until;
 };
 
+/// Where the camera is at one time.
+struct CameraKeyframeSettings {
+  double time = 0.0;
+  std::optional<Vec3> eye;
+  std::optional<Vec3> target;
+  std::optional<double> vertical_fov_deg;
+};
+
 struct CameraSettings {
   std::optional<Vec3> eye;
   std::optional<Vec3> target;
   std::optional<double> vertical_fov_deg;
+  std::optional<double> focal_length;
+  double film_height = 0.024;
+  std::optional<double> f_number;
+  std::optional<double> focus_distance;
+  double shutter = 0.0;
+  std::string interpolation = "smooth";
+  std::vector<CameraKeyframeSettings> keyframes;
   int width = 1280;
   int height = 720;
 };
@@ -198,28 +216,46 @@ struct LightSettings {
   Vec3 radiance{8.0, 8.0, 8.0};
 };
 
+/// Light from far away.
+struct EnvironmentSettings {
+  std::string kind = "studio";
+  std::string image;
+  double strength = 1.0;
+  double rotate_deg = 0.0;
+  double sun_elevation_deg = 40.0;
+  double sun_azimuth_deg = 135.0;
+  double haze = 1.0;
+  std::optional<bool> visible;
+};
+
 struct LookSettings {
+  /// What is left out is the material's own.
   struct State {
-    Vec3 colour;
-    double roughness;
-    double scatter;
+    std::optional<Vec3> colour;
+    std::optional<double> roughness;
+    std::optional<double> scatter;
   };
+  std::string material = "wax";
   State cold;
   State hot;
   std::optional<double> cold_K;
   std::optional<double> hot_K;
-  double specular = 1.0;
+  std::optional<double> specular;
   double ior = 1.45;
   double exposure = 1.0;
-
-  /// The renderer's own look.
-  LookSettings();
+  std::optional<std::string> tone_curve;
+  std::optional<BlackBodyLook> black_body;
+  std::optional<CrustLook> crust;
 };
 
 struct RenderSettings {
   int samples = RenderOptions{}.samples;
+  int bounces = RenderOptions{}.bounces;
+  double firefly_limit = 16.0;
   bool denoise = true;
   std::int64_t seed = 1;
+  int png_bits = 8;
+  bool exr = false;
 };
 
 struct Scene {
@@ -240,9 +276,11 @@ struct Scene {
   SurfacingOptions surface;
   CameraSettings camera;
   std::vector<LightSettings> lights;
+  EnvironmentSettings environment;
   LookSettings look;
   RenderSettings render;
 
+  std::filesystem::path file;  ///< as it was named
   /// Folder of the scene file: mesh paths are looked up there first, then in smelt's own folder.
   std::filesystem::path folder;
 

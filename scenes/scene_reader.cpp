@@ -65,21 +65,22 @@ class SceneReader final : public SchemaVisitor {
     if (const auto* node = require(key)) read_integer(*node, path_of(key), value, limits);
   }
   void boolean(const Key& key, bool& value) override {
-    const auto* node = find(key);
-    if (!node) return;
-    if (const auto b = node->value_exact<bool>())
-      value = *b;
-    else
-      wrong_type(*node, path_of(key), "true or false");
+    if (const auto* node = find(key)) read_boolean(*node, path_of(key), value);
+  }
+  void boolean(const Key& key, std::optional<bool>& value) override {
+    if (const auto* node = find(key)) read_boolean(*node, path_of(key), value.emplace());
+  }
+  void optional_text(const Key& key, std::string& value) override {
+    if (const auto* node = find(key)) read_text(*node, path_of(key), value);
   }
   void required_text(const Key& key, std::string& value) override {
     if (const auto* node = require(key)) read_text(*node, path_of(key), value);
   }
   void choice(const Key& key, std::string& value, const std::vector<std::string_view>& choices) override {
-    const auto* node = find(key);
-    if (!node || !read_text(*node, path_of(key), value)) return;
-    if (std::find(choices.begin(), choices.end(), value) == choices.end())
-      errors_.add(path_of(key), fmt::format("\"{}\" is none of {}", value, fmt::join(choices, ", ")));
+    if (const auto* node = find(key)) read_choice(*node, path_of(key), value, choices);
+  }
+  void choice(const Key& key, std::optional<std::string>& value, const std::vector<std::string_view>& choices) override {
+    if (const auto* node = find(key)) read_choice(*node, path_of(key), value.emplace(), choices);
   }
   void vector(const Key& key, Vec3& value, const Limits& limits) override {
     if (const auto* node = find(key)) read_vector(*node, path_of(key), value, limits);
@@ -235,6 +236,19 @@ class SceneReader final : public SchemaVisitor {
     if (!allowed(static_cast<double>(*i), limits)) errors_.add(path, fmt::format("must be {}, is {}", describe(limits, true), *i));
   }
 
+  void read_boolean(const toml::node& node, const std::string& path, bool& value) {
+    if (const auto b = node.value_exact<bool>())
+      value = *b;
+    else
+      wrong_type(node, path, "true or false");
+  }
+
+  void read_choice(const toml::node& node, const std::string& path, std::string& value, const std::vector<std::string_view>& choices) {
+    if (!read_text(node, path, value)) return;
+    if (std::find(choices.begin(), choices.end(), value) == choices.end())
+      errors_.add(path, fmt::format("\"{}\" is none of {}", value, fmt::join(choices, ", ")));
+  }
+
   bool read_text(const toml::node& node, const std::string& path, std::string& value) {
     if (const auto s = node.value_exact<std::string>()) {
       value = *s;
@@ -314,6 +328,7 @@ Scene read_scene(const std::filesystem::path& path, const std::vector<std::strin
   for (const std::string& text : overrides) apply_override(root, text, errors);
 
   Scene scene;
+  scene.file = path;
   scene.folder = std::filesystem::absolute(path).parent_path();
   SceneReader reader(root, errors);
   visit_scene(reader, scene);

@@ -67,8 +67,17 @@ class TomlWriter final : public SchemaVisitor {
   }
   void required_integer(const Key& key, std::int64_t& value, const Limits&) override { line(key, fmt::to_string(value)); }
   void boolean(const Key& key, bool& value) override { line(key, value ? "true" : "false"); }
+  void boolean(const Key& key, std::optional<bool>& value) override {
+    if (value) line(key, *value ? "true" : "false");
+  }
+  void optional_text(const Key& key, std::string& value) override {
+    if (!value.empty()) line(key, toml_string(value));
+  }
   void required_text(const Key& key, std::string& value) override { line(key, toml_string(value)); }
   void choice(const Key& key, std::string& value, const std::vector<std::string_view>&) override { line(key, toml_string(value)); }
+  void choice(const Key& key, std::optional<std::string>& value, const std::vector<std::string_view>&) override {
+    if (value) line(key, toml_string(*value));
+  }
   void vector(const Key& key, Vec3& value, const Limits&) override { line(key, vector_text(value)); }
   void vector(const Key& key, std::optional<Vec3>& value, const Limits&) override {
     if (value) line(key, vector_text(*value));
@@ -135,9 +144,14 @@ class ReferenceWriter final : public SchemaVisitor {
     row(key, "whole, " + limits_text(limits), "**required**");
   }
   void boolean(const Key& key, bool& value) override { row(key, "true or false", value ? "true" : "false"); }
+  void boolean(const Key& key, std::optional<bool>&) override { row(key, "true or false", ""); }
+  void optional_text(const Key& key, std::string&) override { row(key, "text", ""); }
   void required_text(const Key& key, std::string&) override { row(key, "text", "**required**"); }
   void choice(const Key& key, std::string& value, const std::vector<std::string_view>& choices) override {
     row(key, fmt::format("`{}`", fmt::join(choices, "` `")), toml_string(value));
+  }
+  void choice(const Key& key, std::optional<std::string>&, const std::vector<std::string_view>& choices) override {
+    row(key, fmt::format("`{}`", fmt::join(choices, "` `")), "");
   }
   void vector(const Key& key, Vec3& value, const Limits& limits) override {
     row(key, "three numbers, " + limits_text(limits),

@@ -45,8 +45,12 @@ class SchemaVisitor {
   virtual void integer(const Key& key, std::optional<std::int64_t>& value, const Limits& limits) = 0;
   virtual void required_integer(const Key& key, std::int64_t& value, const Limits& limits) = 0;
   virtual void boolean(const Key& key, bool& value) = 0;
+  virtual void boolean(const Key& key, std::optional<bool>& value) = 0;
   virtual void required_text(const Key& key, std::string& value) = 0;
+  /// A text that may be left out; empty then.
+  virtual void optional_text(const Key& key, std::string& value) = 0;
   virtual void choice(const Key& key, std::string& value, const std::vector<std::string_view>& choices) = 0;
+  virtual void choice(const Key& key, std::optional<std::string>& value, const std::vector<std::string_view>& choices) = 0;
   virtual void vector(const Key& key, Vec3& value, const Limits& limits) = 0;
   virtual void vector(const Key& key, std::optional<Vec3>& value, const Limits& limits) = 0;
   /// A number, or { first = , second = } for the two ends of a range.

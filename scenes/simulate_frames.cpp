@@ -6,6 +6,7 @@
 #include "io/checkpoint.h"
 #include "io/particles_vdb.h"
 #include "scenes/build_simulation.h"
+#include "scenes/rest_positions.h"
 #include "scenes/scene_writer.h"
 #include "scenes/stage_frames.h"
 #include "scenes/stages.h"
@@ -112,8 +113,10 @@ std::vector<BodyPose> to_body_poses(const Colliders<3>& colliders) {
 /// Cache first, then the checkpoint: a checkpoint says that its frame is safe.
 template <typename Real>
 void store_frame(const Solver<3, Real>& solver, const SimulationSetup& setup, const OutputFolder& folder, std::uint64_t scene_hash,
-                 int frame, double time) {
-  write_particles(folder.particles(frame), to_frame(solver, setup.spacing, frame, time));
+                 int frame, double time, std::optional<RestPositions>& rest) {
+  ParticleFrame cache = to_frame(solver, setup.spacing, frame, time);
+  if (rest) rest->set_rest(cache);
+  write_particles(folder.particles(frame), cache);
   const std::vector<BodyPose> bodies = to_body_poses(solver.colliders());
   if (!bodies.empty()) write_body_poses(folder.bodies(frame), frame, time, bodies);
   write_checkpoint(folder.checkpoint(frame),
@@ -136,13 +139,16 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
   Solver<3, Real> solver(setup.parameters, setup.materials, std::move(colliders),
                          checkpoint ? checkpoint->particles : std::move(setup.particles),
                          checkpoint ? checkpoint->account : ParticleAccount{});
+  std::optional<RestPositions> rest;
+  if (scene.particles.rest_position) rest.emplace(setup.parameters);
   int frame = 1;
   if (checkpoint) {
     frame = checkpoint->frame;
+    if (rest) rest->take_over(read_particles(folder.particles(frame)));
     progress.message(fmt::format("resuming after frame {}", frame));
   } else {
     const CostMeter meter;
-    store_frame(solver, setup, folder, scene_hash, 1, 0.0);
+    store_frame(solver, setup, folder, scene_hash, 1, 0.0, rest);
     const Diagnostics<3> diagnostics = compute_diagnostics(solver);
     report.set_simulated(1, 0.0, {}, diagnostics, compute_mass_account(solver, diagnostics.mass), ledger_of(solver), to_body_poses(solver.colliders()),
                          meter.finish({folder.particles(1)}));
@@ -160,7 +166,7 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
       throw DivergedError(fmt::format("{}; frames 1 to {} are kept in {}", error.what(), frame - 1, folder.particles().string()));
     }
     const double time = (frame - 1) / scene.shot.fps;
-    store_frame(solver, setup, folder, scene_hash, frame, time);
+    store_frame(solver, setup, folder, scene_hash, frame, time, rest);
     const Diagnostics<3> diagnostics = compute_diagnostics(solver);
     report.set_simulated(frame, time, statistics, diagnostics, compute_mass_account(solver, diagnostics.mass), ledger_of(solver),
                          to_body_poses(solver.colliders()),

@@ -7,8 +7,11 @@
 #include "scenes/run_report.h"
 #include "scenes/scene.h"
 
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace smelt {
 
@@ -30,7 +33,26 @@ void simulate_frames(const Scene& scene, const OutputFolder& folder, const Stage
 /// Wraps the particles of each frame in a surface: OBJ and VDB. Throws Error for a frame whose particles are missing.
 void surface_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report, Progress& progress);
 
-/// Draws each frame as PNG. Throws Error for a frame whose surface is missing.
+/// Draws each frame as PNG, and as EXR where the scene asks for it. A frame that cannot be drawn is told and left out; the others are
+/// made, and at the end Error is thrown.
 void render_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report, Progress& progress);
+
+/// Pictures asked for on the command line instead of the scene's.
+struct PictureRequest {
+  bool diagnostic = false;
+  std::string colour_by = "temperature";           ///< or viscosity, density, speed, pressure
+  std::optional<std::pair<double, double>> range;  ///< of the colours; the values' own over the frames where not given
+  std::string overlay = "none";                    ///< of the surface: or wire, translucent
+  int sheet_columns = 0, sheet_rows = 0;           ///< of a contact sheet; 0: none
+};
+
+/// Draws the particles of each frame as coloured spheres, like render_frames().
+void diagnose_frames(const Scene& scene, const OutputFolder& folder, const FrameRange& frames, const PictureRequest& request, Progress& progress);
+
+/// Frames for a sheet of columns x rows places: evenly spread over the range, first and last included.
+std::vector<int> choose_sheet_frames(const FrameRange& frames, int n);
+
+/// Puts the pictures of chosen frames, drawn before, on one page in the folder. Throws Error where one is missing.
+std::filesystem::path write_sheet(const OutputFolder& folder, const FrameRange& frames, const PictureRequest& request);
 
 }  // namespace smelt

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/sph/rheology.h"
 #include "io/height_field.h"
+#include "render/film.h"
 #include "scenes/nearest_word.h"
 #include "scenes/scene_reader.h"
 
@@ -256,6 +257,51 @@ void validate_periodic(const PeriodicSettings& s, SceneErrors& errors) {
       errors.add("periodic.upper_m", fmt::format("must be above lower_m along {}, is {} and {}", "xyz"[a], (*s.upper)[a], (*s.lower)[a]));
 }
 
+void validate_camera(const Scene& scene, SceneErrors& errors) {
+  const CameraSettings& s = scene.camera;
+  if (s.eye && s.target && (*s.eye - *s.target).norm() < 1e-9)
+    errors.add("camera.target_m", "is the eye itself; choose another point to look at");
+  if (s.focal_length && s.vertical_fov_deg)
+    errors.add("camera.focal_length_m", "give vertical_fov_deg or focal_length_m, not both: one follows from the other");
+  if (s.focus_distance && !s.f_number) errors.add("camera.focus_distance_m", "without f_number all is sharp; give one, or leave this out");
+  for (std::size_t k = 0; k < s.keyframes.size(); ++k) {
+    const CameraKeyframeSettings& key = s.keyframes[k];
+    const std::string path = fmt::format("camera.keyframes.{}", k);
+    if (k > 0 && !(key.time > s.keyframes[k - 1].time))
+      errors.add(path + ".time_s", fmt::format("must be later than the keyframe before, at {} s, is {}", s.keyframes[k - 1].time, key.time));
+    if (key.eye && key.target && (*key.eye - *key.target).norm() < 1e-9)
+      errors.add(path + ".target_m", "is the eye itself; choose another point to look at");
+  }
+  const double pixels = static_cast<double>(s.width) * s.height;
+  if (pixels > static_cast<double>(max_picture_pixels))
+    errors.add("camera.width", fmt::format("{} x {} pixels would take {:.1f} GB of memory; at most {} pixels in all are drawn", s.width, s.height,
+                                           pixels * static_cast<double>(film_bytes_per_pixel) * 1e-9, max_picture_pixels));
+}
+
+void validate_environment(const Scene& scene, SceneErrors& errors) {
+  const EnvironmentSettings& s = scene.environment;
+  if (s.kind != "image") {
+    if (!s.image.empty()) errors.add("environment.image", fmt::format("goes with kind = \"image\" alone, which is \"{}\"", s.kind));
+    return;
+  }
+  if (s.image.empty()) return errors.add("environment.image", "missing: the panorama's file, .exr or .hdr");
+  try {
+    find_mesh(scene, s.image);
+  } catch (const Error& error) {
+    errors.add("environment.image", error.what());
+  }
+}
+
+void validate_look(const Scene& scene, SceneErrors& errors) {
+  const bool hot = !scene.materials.empty() && std::all_of(scene.materials.begin(), scene.materials.end(), [](const auto& m) { return m.heat.has_value(); });
+  if (scene.look.material == "lava" && !hot)
+    errors.add("look.material", "lava glows by its temperature, but the material has no heat; give it one, or take rock");
+  if (scene.look.black_body && !hot)
+    errors.add("look.black_body", "glows by the temperature, but the material has no heat; give it one, or leave this out");
+  if (scene.look.crust && !scene.particles.rest_position)
+    errors.add("look.crust", "moves with the material: set rest_position = true in [particles] too");
+}
+
 }  // namespace
 
 void validate_scene(const Scene& scene, SceneErrors& errors) {
@@ -299,6 +345,14 @@ void validate_scene(const Scene& scene, SceneErrors& errors) {
   if (scene.domain.lower && scene.domain.upper && !((*scene.domain.upper - *scene.domain.lower).array() > 0.0).all())
     errors.add("domain.upper_m", "must be above lower_m along every axis");
   if (scene.periodic) validate_periodic(*scene.periodic, errors);
+  validate_camera(scene, errors);
+  for (std::size_t k = 0; k < scene.lights.size(); ++k)
+    if ((scene.lights[k].target - scene.lights[k].position).norm() < 1e-9)
+      errors.add(fmt::format("light.{}.target_m", k), "is the lamp's own position; choose the point it faces");
+  validate_environment(scene, errors);
+  validate_look(scene, errors);
+  if (scene.render.png_bits != 8 && scene.render.png_bits != 16)
+    errors.add("render.png_bits", fmt::format("must be 8 or 16, is {}", scene.render.png_bits));
   if (scene.look.cold_K && scene.look.hot_K && !(*scene.look.hot_K > *scene.look.cold_K))
     errors.add("look.hot_K", fmt::format("must be above cold_K = {}, is {}", *scene.look.cold_K, *scene.look.hot_K));
 }

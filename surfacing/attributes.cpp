@@ -10,7 +10,8 @@ namespace smelt {
 
 namespace {
 
-constexpr std::size_t n_fields = 6;  // velocity, temperature, viscosity, extra
+constexpr std::size_t n_fields = 6;            // velocity, temperature, viscosity, extra
+constexpr std::size_t n_fields_with_rest = 9;  // and the rest position
 
 struct VertexInBin {
   std::uint64_t key;
@@ -30,28 +31,30 @@ std::vector<VertexInBin> sort_vertices(const std::vector<Vec3>& vertices, double
   return out;
 }
 
-}  // namespace
-
-std::vector<float> compute_attributes(SurfaceMesh& surface, const ParticleFrame& particles, const ParticleBins& bins,
-                                      std::span<const float> volume, std::span<const float> extra, double h) {
-  CHECK_EQ(volume.size(), bins.position.size());
-  CHECK_EQ(extra.size(), bins.position.size());
+template <std::size_t N>
+std::vector<float> average_at_vertices(SurfaceMesh& surface, const ParticleFrame& particles, const ParticleBins& bins,
+                                       std::span<const float> volume, std::span<const float> extra, double h) {
+  constexpr bool has_rest = N == n_fields_with_rest;
   const bool has_temperature = !particles.temperature.empty(), has_viscosity = !particles.viscosity.empty();
   const std::vector<Vec3>& vertices = surface.mesh.vertices;
   const std::size_t n = vertices.size();
   surface.velocity.resize(n);
   surface.temperature.resize(has_temperature ? n : 0);
   surface.viscosity.resize(has_viscosity ? n : 0);
+  surface.rest.resize(has_rest ? n : 0);
   std::vector<float> extra_at_vertex(n);
   const auto fields_of = [&](std::uint32_t j) {
     const std::uint32_t i = bins.index[j];
     const Vec3f& v = particles.velocity[i];
-    return std::array<float, n_fields>{v[0],
-                                       v[1],
-                                       v[2],
-                                       has_temperature ? particles.temperature[i] : 0.0f,
-                                       has_viscosity ? particles.viscosity[i] : 0.0f,
-                                       extra[j]};
+    std::array<float, N> fields{v[0],
+                                v[1],
+                                v[2],
+                                has_temperature ? particles.temperature[i] : 0.0f,
+                                has_viscosity ? particles.viscosity[i] : 0.0f,
+                                extra[j]};
+    if constexpr (has_rest)
+      for (std::size_t a = 0; a < 3; ++a) fields[n_fields + a] = particles.rest[i][static_cast<int>(a)];
+    return fields;
   };
 
   const std::vector<VertexInBin> sorted = sort_vertices(vertices, bins.edge);
@@ -62,7 +65,7 @@ std::vector<float> compute_attributes(SurfaceMesh& surface, const ParticleFrame&
   tbb::parallel_for(std::size_t{1}, group.size(), [&](std::size_t g) {
     Box3 box;
     for (std::size_t i = group[g - 1]; i < group[g]; ++i) box.extend(vertices[sorted[i].vertex]);
-    LocalParticles<n_fields> near;
+    LocalParticles<N> near;
     gather_particles(near, bins, volume, box, h, fields_of);
     for (std::size_t i = group[g - 1]; i < group[g]; ++i) {
       const std::uint32_t v = sorted[i].vertex;
@@ -72,9 +75,20 @@ std::vector<float> compute_attributes(SurfaceMesh& surface, const ParticleFrame&
       if (has_temperature) surface.temperature[v] = total[4] / total[0];
       if (has_viscosity) surface.viscosity[v] = total[5] / total[0];
       extra_at_vertex[v] = total[6] / total[0];
+      if constexpr (has_rest) surface.rest[v] = Vec3f(total[7], total[8], total[9]) / total[0];
     }
   });
   return extra_at_vertex;
+}
+
+}  // namespace
+
+std::vector<float> compute_attributes(SurfaceMesh& surface, const ParticleFrame& particles, const ParticleBins& bins,
+                                      std::span<const float> volume, std::span<const float> extra, double h) {
+  CHECK_EQ(volume.size(), bins.position.size());
+  CHECK_EQ(extra.size(), bins.position.size());
+  if (particles.rest.empty()) return average_at_vertices<n_fields>(surface, particles, bins, volume, extra, h);
+  return average_at_vertices<n_fields_with_rest>(surface, particles, bins, volume, extra, h);
 }
 
 }  // namespace smelt

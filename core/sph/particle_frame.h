@@ -15,6 +15,7 @@ struct ParticleFrame {
   std::vector<float> density;      ///< [kg/m^3]
   std::vector<float> temperature;  ///< [K], or empty
   std::vector<float> viscosity;    ///< [Pa s], or empty
+  std::vector<Vec3f> rest;         ///< where it was in the unmoved material [m], or empty
   std::vector<std::int32_t> id;    ///< stable through a shot
 
   double mass = 0.0;               ///< of one particle [kg]

@@ -1,6 +1,7 @@
 // The program as a user meets it: the real binary, its files, its exit codes.
 
 #include "io/atomic_file.h"
+#include "io/exr.h"
 #include "io/obj.h"
 #include "io/particles_vdb.h"
 #include "io/png.h"
@@ -338,6 +339,92 @@ TEST_F(CommandLine, AMissingStageIsExitThreeAndSaysWhich) {
   const Result render = run({"render", small_scene(), "-o", output("out")});
   EXPECT_EQ(render.status, 3);
   EXPECT_NE(render.err.find("surface.0001"), std::string::npos) << render.err;
+}
+
+/// Frames that cannot be drawn are named; the others are drawn all the same.
+TEST_F(CommandLine, DamagedSurfacesCostTheirOwnFramesOnly) {
+  ASSERT_EQ(run({"run", small_scene(), "-o", output("out")}).status, 0);
+  const fs::path out = output("out");
+  fs::remove_all(out / "frames");
+  fs::remove(out / "surface/surface.0002.obj");
+  fs::resize_file(out / "surface/surface.0003.vdb", fs::file_size(out / "surface/surface.0003.vdb") / 2);
+  const Result result = run({"render", small_scene(), "-o", out.string()});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_NE(result.err.find("small.toml: frame 2"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("surface.0002.obj"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("surface.0003.vdb"), std::string::npos) << result.err;
+  EXPECT_TRUE(fs::exists(out / "frames/frame.0001.png"));
+  EXPECT_FALSE(fs::exists(out / "frames/frame.0002.png"));
+  EXPECT_FALSE(fs::exists(out / "frames/frame.0003.png"));
+  EXPECT_TRUE(fs::exists(out / "frames/frame.0004.png"));
+}
+
+TEST_F(CommandLine, PicturesThatCannotBeDrawnNameTheirKeyAndFile) {
+  ASSERT_EQ(run({"run", small_scene(), "-o", output("out"), "--frames", "1-2"}).status, 0);
+  const auto expect_refusal = [&](const std::vector<std::string>& more, const std::vector<std::string>& texts) {
+    std::vector<std::string> arguments{"render", small_scene(), "-o", output("out"), "--frames", "1-2"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Result result = run(arguments);
+    EXPECT_EQ(result.status, 3) << more.back() << result.err;
+    for (const std::string& text : texts) EXPECT_NE(result.err.find(text), std::string::npos) << text << ": " << result.err;
+  };
+  expect_refusal({"--set", "camera.eye_m=[0.0, 0.3, 0.0]"}, {"camera.eye_m", "inside the fluid", "small.toml"});
+  expect_refusal({"--set", "camera.width=16000", "--set", "camera.height=16000"}, {"camera.width", "GB of memory"});
+  expect_refusal({"--set", "look.material=gold"}, {"look.material", "none of wax"});
+  expect_refusal({"--set", "look.crust.plate_m=0.1"}, {"look.crust", "rest_position"});
+  expect_refusal({"--set", "environment.kind=image", "--set", "environment.image=no.exr"}, {"environment.image", "no.exr"});
+  expect_refusal({"--colour-by", "speed"}, {"--colour-by", "--look diagnostic"});
+  expect_refusal({"--look", "diagnostic", "--colour-range", "5:1"}, {"--colour-range 5:1", "below"});
+  expect_refusal({"--sheet", "4y3"}, {"--sheet 4y3", "4x3"});
+  // Rest positions asked for after the simulation: the caches have none.
+  expect_refusal({"--set", "particles.rest_position=true", "--set", "look.crust.plate_m=0.1"}, {"look.crust", "simulate again"});
+  std::ofstream(folder_ / "lamp.toml") << read_file(small_scene()) << "[[light]]\nposition_m = [0.0, 2.0, 0.0]\nheight_m = 0.0\n";
+  const Result lamp = run({"render", output("lamp.toml"), "-o", output("out")});
+  EXPECT_EQ(lamp.status, 3);
+  EXPECT_NE(lamp.err.find("light.0.height_m"), std::string::npos) << lamp.err;
+  EXPECT_EQ(run({"render", small_scene(), "-o", output("out"), "--look", "sketch"}).status, 2);
+  EXPECT_EQ(run({"render", small_scene(), "-o", output("out"), "--look", "diagnostic", "--colour-by", "mood"}).status, 2);
+}
+
+TEST_F(CommandLine, DiagnosticPicturesAndSheets) {
+  ASSERT_EQ(run({"run", small_scene(), "-o", output("out")}).status, 0);
+  const fs::path out = output("out");
+  for (const char* quantity : {"temperature", "viscosity", "density", "speed", "pressure"}) {
+    const Result result = run({"render", small_scene(), "-o", out.string(), "--look", "diagnostic", "--colour-by", quantity, "--frames", "2-3"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(read_png(out / fmt::format("diagnostic/{}.0003.png", quantity)).width, 160);
+  }
+  EXPECT_EQ(run({"render", small_scene(), "-o", out.string(), "--look", "diagnostic", "--surface", "wire", "--sheet", "2x2"}).status, 0);
+  EXPECT_GT(read_png(out / "sheet.temperature.png").width, 320);
+  const Result sheet = run({"render", small_scene(), "-o", out.string(), "--sheet", "3x1"});
+  EXPECT_EQ(sheet.status, 0) << sheet.err;
+  EXPECT_NE(sheet.out.find("sheet.png"), std::string::npos) << sheet.out;
+  EXPECT_GT(read_png(out / "sheet.png").width, 480);
+  // A missing attribute.
+  std::string cold = read_file(small_scene());
+  const auto cut = [&](const std::string& from, const std::string& to) { cold.replace(cold.find(from), from.size(), to); };
+  cut("viscosity = { law = \"smd\", index = 1.0, yield_stress_Pa = { cold = 4e4, hot = 10.0 }, consistency_Pa_sn = { cold = 4e3, hot = 100.0 }, "
+      "jump_number = { cold = 1000, hot = 15 } }",
+      "viscosity = { law = \"inviscid\" }");
+  cut("heat = {", "#");
+  cut("temperature_K = { bottom", "#");
+  cut("temperature_K = 290\n[ambient]", "[ambient]");
+  cold.erase(cold.find("[ambient]"), cold.find("[camera]") - cold.find("[ambient]"));
+  std::ofstream(folder_ / "cold.toml") << cold;
+  ASSERT_EQ(run({"simulate", output("cold.toml"), "-o", output("cold"), "--frames", "1"}).status, 0);
+  const Result none = run({"render", output("cold.toml"), "-o", output("cold"), "--frames", "1", "--look", "diagnostic", "--colour-by", "viscosity"});
+  EXPECT_EQ(none.status, 3);
+  EXPECT_NE(none.err.find("--colour-by viscosity"), std::string::npos) << none.err;
+}
+
+TEST_F(CommandLine, LayersAndSixteenBitsWhereAskedFor) {
+  const Result result = run({"run", small_scene(), "-o", output("out"), "--frames", "1-2", "--set", "render.exr=true", "--set", "render.png_bits=16"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const LayeredImage image = read_exr(output("out") + "/frames/frame.0002.exr");
+  EXPECT_EQ(image.width, 160);
+  for (const char* name : {"R", "A", "albedo.G", "depth.Z", "normal.X", "position.Y", "temperature.T", "velocity.Z"})
+    EXPECT_TRUE(std::any_of(image.channels.begin(), image.channels.end(), [&](const ImageChannel& c) { return c.name == name; })) << name;
+  EXPECT_EQ(read_file(output("out") + "/frames/frame.0002.png")[24], 16);
 }
 
 TEST_F(CommandLine, ResumingAnotherSceneIsRefused) {

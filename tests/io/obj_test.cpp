@@ -18,7 +18,7 @@ std::filesystem::path temporary(const std::string& name) {
 }
 
 SurfaceMesh make_surface() {
-  SurfaceMesh surface{make_sphere({0.1, 1e-3, -2e4}, 0.7, 5), {}, {}, {}, {}};
+  SurfaceMesh surface{make_sphere({0.1, 1e-3, -2e4}, 0.7, 5), {}, {}, {}, {}, {}};
   for (const Vec3& v : surface.mesh.vertices)
     surface.normals.push_back((v - Vec3(0.1, 1e-3, -2e4)).normalized().cast<float>());
   return surface;
@@ -49,7 +49,7 @@ TEST(Obj, IsTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(Obj, LooksAsOtherProgramsExpect) {
-  SurfaceMesh surface{make_box(Vec3::Zero(), {1.0, 0.5, 1e-7}), std::vector<Vec3f>(8, Vec3f(0, 1, 0)), {}, {}, {}};
+  SurfaceMesh surface{make_box(Vec3::Zero(), {1.0, 0.5, 1e-7}), std::vector<Vec3f>(8, Vec3f(0, 1, 0)), {}, {}, {}, {}};
   surface.mesh.triangles.resize(1);
   write_obj(temporary("look.obj"), surface);
   const std::string text = read_file(temporary("look.obj"));
@@ -68,7 +68,7 @@ TEST(Obj, HoldsAFrameWithoutSurface) {
 }
 
 TEST(Obj, RefusesToWriteWhatIsNotFinite) {
-  SurfaceMesh surface{make_box(Vec3::Zero(), Vec3::Ones()), std::vector<Vec3f>(8, Vec3f(0, 1, 0)), {}, {}, {}};
+  SurfaceMesh surface{make_box(Vec3::Zero(), Vec3::Ones()), std::vector<Vec3f>(8, Vec3f(0, 1, 0)), {}, {}, {}, {}};
   surface.mesh.vertices[3].x() = std::numeric_limits<double>::quiet_NaN();
   const std::string message = message_of<Error>([&] { write_obj(temporary("nan.obj"), surface); });
   EXPECT_NE(message.find("nan.obj: vertex 4 is (nan, 1, 0)"), std::string::npos) << message;

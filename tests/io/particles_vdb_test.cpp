@@ -34,6 +34,7 @@ ParticleFrame make_frame(std::size_t n, const Vec3& centre, double spacing) {
     p.density.push_back(static_cast<float>(900.0 + uniform(random)));
     p.temperature.push_back(static_cast<float>(350.0 + 50.0 * uniform(random)));
     p.viscosity.push_back(static_cast<float>(std::exp(9.0 * uniform(random))));
+    p.rest.emplace_back(uniform(random), 7.0f, uniform(random));
     p.id.push_back(static_cast<std::int32_t>(3 * i));
   }
   p.mass = 0.1;
@@ -53,6 +54,7 @@ TEST(ParticlesVdb, ReadsBackEverything) {
   EXPECT_EQ(back.density, p.density);
   EXPECT_EQ(back.temperature, p.temperature);
   EXPECT_EQ(back.viscosity, p.viscosity);
+  EXPECT_EQ(back.rest, p.rest);
   EXPECT_EQ(back.mass, p.mass);
   EXPECT_EQ(back.spacing, p.spacing);
   EXPECT_EQ(back.smoothing_length, p.smoothing_length);
@@ -78,6 +80,7 @@ TEST(ParticlesVdb, LeavesOutWhatAFrameDoesNotHave) {
   ParticleFrame p = make_frame(100, Vec3::Zero(), 0.1);
   p.temperature.clear();
   p.viscosity.clear();
+  p.rest.clear();
   write_particles(temporary("cold.vdb"), p);
   const ParticleFrame back = read_particles(temporary("cold.vdb"));
   EXPECT_EQ(back.size(), 100u);
@@ -108,6 +111,7 @@ TEST(ParticlesVdb, BytesDependNeitherOnThreadsNorOnTheOrderOfParticles) {
     shuffled.density[i] = p.density[from];
     shuffled.temperature[i] = p.temperature[from];
     shuffled.viscosity[i] = p.viscosity[from];
+    shuffled.rest[i] = p.rest[from];
     shuffled.id[i] = p.id[from];
   }
   write_particles(temporary("threads.vdb"), shuffled);

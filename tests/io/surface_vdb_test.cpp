@@ -31,12 +31,13 @@ float temperature_at(const Vec3& x) {
 
 /// A sphere with linear fields on it.
 SurfaceMesh make_surface() {
-  SurfaceMesh s{make_sphere(centre, radius, 4), {}, {}, {}, {}};
+  SurfaceMesh s{make_sphere(centre, radius, 4), {}, {}, {}, {}, {}};
   for (const Vec3& x : s.mesh.vertices) {
     s.normals.push_back((x - centre).normalized().cast<float>());
     s.velocity.push_back(velocity_at(x));
     s.temperature.push_back(temperature_at(x));
     s.viscosity.push_back(7.0f);
+    s.rest.push_back(2.0f * velocity_at(x));
   }
   return s;
 }
@@ -53,7 +54,7 @@ TEST(SurfaceVdb, WritesALevelSetInMetres) {
   const SurfaceMesh s = make_surface();
   write_surface_vdb(temporary("level_set.vdb"), s, 0.02, 12, 0.5);
   const auto grids = read_vdb(temporary("level_set.vdb"));
-  EXPECT_EQ(grids.size(), 4u);
+  EXPECT_EQ(grids.size(), 5u);
   const auto level_set = find_grid<openvdb::FloatGrid>(grids, "surface");
   EXPECT_EQ(level_set->getGridClass(), openvdb::GRID_LEVEL_SET);
   EXPECT_DOUBLE_EQ(level_set->voxelSize().x(), 0.02);
@@ -105,11 +106,13 @@ TEST(SurfaceVdb, PutsASurfaceTogetherAgain) {
   EXPECT_EQ(back.normals, s.normals);
   ASSERT_EQ(back.velocity.size(), s.velocity.size());
   ASSERT_EQ(back.temperature.size(), s.temperature.size());
+  ASSERT_EQ(back.rest.size(), s.rest.size());
   ASSERT_EQ(back.viscosity.size(), s.viscosity.size());
   for (std::size_t i = 0; i < s.velocity.size(); ++i) {
     // Far less than the fields change over a voxel: 0.02 m/s and 2 K.
     ASSERT_LT((back.velocity[i] - s.velocity[i]).norm(), 2e-3);
     ASSERT_NEAR(back.temperature[i], s.temperature[i], 0.2);
+    ASSERT_LT((back.rest[i] - s.rest[i]).norm(), 4e-3f);
     ASSERT_NEAR(back.viscosity[i], 7.0, 1e-5) << "a vertex near the end of the band";
   }
 }
@@ -118,6 +121,7 @@ TEST(SurfaceVdb, LeavesOutWhatASurfaceDoesNotHave) {
   SurfaceMesh s = make_surface();
   s.temperature.clear();
   s.viscosity.clear();
+  s.rest.clear();
   write_obj(temporary("cold.obj"), s);
   write_surface_vdb(temporary("cold.vdb"), s, 0.02, 1, 0.0);
   EXPECT_EQ(read_vdb(temporary("cold.vdb")).size(), 2u);

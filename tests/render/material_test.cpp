@@ -94,6 +94,31 @@ TEST(CoatedDiffuse, IsReciprocal) {
   EXPECT_NEAR(forth, CoatedDiffuse(albedo, 0.8f, 0.7f, 0.4f)(albedo, 0.3f), 1e-6f);
 }
 
+/// Directional albedo of a metal: at most what arrives, and all of it where the metal is white.
+TEST(Metal, ReflectsNoMoreThanArrives) {
+  const CoatAlbedo mirror = CoatAlbedo::perfect_mirror();
+  for (const Vec3f& f0 : {Vec3f(1.0f, 1.0f, 1.0f), Vec3f(0.95f, 0.64f, 0.54f)})
+    for (const float roughness : {0.4f, 0.7f, 1.0f})
+      for (const double cos_out : {0.2, 0.6, 1.0}) {
+        const Vec3f wo = direction(cos_out, 0.0);
+        const Vec3f scale = multiple_scattering(mirror, f0, wo.z(), roughness);
+        for (int c = 0; c < 3; ++c) {
+          const double albedo = integrate_hemisphere([&](const Vec3f& wi) {
+            const Vec3f half = (wi + wo).normalized();
+            return ggx_mirror(wi, wo, ggx_alpha(roughness)) * wi.z() * scale[c] * fresnel_metal(f0, half.dot(wo))[c];
+          });
+          EXPECT_LT(albedo, 1.006) << roughness << " " << cos_out;
+          EXPECT_GT(albedo, 0.98 * f0[c]) << roughness << " " << cos_out;
+        }
+      }
+}
+
+TEST(Metal, FresnelRunsFromItsColourToWhite) {
+  const Vec3f gold(1.0f, 0.77f, 0.34f);
+  EXPECT_LT((fresnel_metal(gold, 1.0f) - gold).norm(), 1e-6f);
+  EXPECT_LT((fresnel_metal(gold, 0.0f) - Vec3f::Ones()).norm(), 1e-6f);
+}
+
 TEST(Look, BlendsFromColdToHot) {
   const Look look;
   EXPECT_FLOAT_EQ(blend_look(look, 250.0f).roughness, look.cold.roughness);

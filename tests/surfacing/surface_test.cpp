@@ -126,6 +126,7 @@ TEST(Surface, AThreadBetweenTwoBallsIsNotSmoothedAway) {
 TEST(Surface, AttributesFollowTheParticles) {
   ParticleFrame frame = make_ball(8.0);
   frame.viscosity.assign(frame.size(), 12.5f);
+  for (const Vec3& x : frame.position) frame.rest.push_back((x + Vec3(5.0, 0.0, 0.0)).cast<float>());
   for (std::size_t i = 0; i < frame.size(); ++i)
     frame.temperature[i] = 300.0f + 100.0f * static_cast<float>(frame.position[i][1]);
   const SurfaceMesh surface = build_surface(frame, {});
@@ -135,14 +136,17 @@ TEST(Surface, AttributesFollowTheParticles) {
   for (std::size_t v = 0; v < n; ++v) {
     ASSERT_NEAR((surface.velocity[v] - Vec3f(1.0f, -2.0f, 0.5f)).norm(), 0.0f, 1e-5f);
     ASSERT_NEAR(surface.viscosity[v], 12.5f, 1e-4f);
+    ASSERT_LT((surface.rest[v].cast<double>() - surface.mesh.vertices[v] - Vec3(5.0, 0.0, 0.0)).cwiseAbs().maxCoeff(), spacing);
     // On the surface all particles lie to one side: the average is that of a point less than a spacing further in.
     ASSERT_NEAR(surface.temperature[v], 300.0 + 100.0 * surface.mesh.vertices[v][1], 100.0 * spacing);
   }
   frame.temperature.clear();
   frame.viscosity.clear();
+  frame.rest.clear();
   const SurfaceMesh plain = build_surface(frame, {});
   EXPECT_TRUE(plain.temperature.empty());
   EXPECT_TRUE(plain.viscosity.empty());
+  EXPECT_TRUE(plain.rest.empty());
   EXPECT_EQ(plain.velocity.size(), n);
 }
 
