@@ -34,8 +34,8 @@ std::vector<VertexInBin> sort_vertices(const std::vector<Vec3>& vertices, double
 
 std::vector<float> compute_attributes(SurfaceMesh& surface, const ParticleFrame& particles, const ParticleBins& bins,
                                       std::span<const float> volume, std::span<const float> extra, double h) {
-  CHECK_EQ(volume.size(), bins.position.size());
-  CHECK_EQ(extra.size(), bins.position.size());
+  CHECK_EQ(volume.size(), bins.n_particles());
+  CHECK_EQ(extra.size(), bins.n_particles());
   const bool has_temperature = !particles.temperature.empty(), has_viscosity = !particles.viscosity.empty();
   const std::vector<Vec3>& vertices = surface.mesh.vertices;
   const std::size_t n = vertices.size();

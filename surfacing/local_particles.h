@@ -25,34 +25,39 @@ struct LocalParticles {
   std::array<std::vector<float>, N> field;
 
   std::size_t size() const { return volume.size(); }
-  void clear() {
-    for (auto& a : x) a.clear();
-    for (auto& a : field) a.clear();
-    volume.clear();
-  }
-  void add(const Vec3f& at, float v, const std::array<float, N>& values) {
-    for (int a = 0; a < 3; ++a) x[a].push_back(at[a]);
-    for (std::size_t f = 0; f < N; ++f) field[f].push_back(values[f]);
-    volume.push_back(v);
+  void resize(std::size_t n) {
+    for (auto& a : x) a.resize(n);
+    for (auto& a : field) a.resize(n);
+    volume.resize(n);
   }
 };
 
-/// Overwrites `out` with the particles within 2 h of `box` [m]; `fields_of(j)` gives the fields of sorted particle j.
+/// Overwrites `out` with the particles of all bins within 2 h of `box` [m]; `fields_of(j)` gives the fields of sorted
+/// particle j.
 template <std::size_t N, typename FieldsOf>
 void gather_particles(LocalParticles<N>& out, const ParticleBins& bins, std::span<const float> volume, const Box3& box,
                       double h, FieldsOf&& fields_of) {
-  out.clear();
+  out.resize(0);
   out.origin = box.lower;
   out.h = h;
-  const Vec3 low = box.lower.array() - 2.0 * h, high = box.upper.array() + 2.0 * h;
-  for_each_range(bins, low, high, [&](std::uint32_t begin, std::uint32_t end) {
-    for (std::uint32_t j = begin; j < end; ++j) {
-      const Vec3& x = bins.position[j];
-      if ((x.array() <= low.array()).any() || (x.array() >= high.array()).any()) continue;
-      out.add(((x - out.origin) / h).template cast<float>(), volume[j], fields_of(j));
-    }
+  const auto h_per_edge = static_cast<float>(bins.edge / h);
+  for_each_bin(bins, box.lower.array() - 2.0 * h, box.upper.array() + 2.0 * h, [&](std::size_t bin) {
+    const Vec3f corner = ((bins.origin(bin) - out.origin) / h).template cast<float>();
+    const std::uint32_t begin = bins.begin[bin], count = bins.begin[bin + 1] - begin;
+    const std::size_t at = out.size();
+    out.resize(at + count);
+    for (int a = 0; a < 3; ++a)
+      for (std::uint32_t i = 0; i < count; ++i) out.x[a][at + i] = corner[a] + h_per_edge * bins.offset[a][begin + i];
+    for (std::uint32_t i = 0; i < count; ++i) out.volume[at + i] = volume[begin + i];
+    if constexpr (N > 0)
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const auto values = fields_of(begin + i);
+        for (std::size_t f = 0; f < N; ++f) out.field[f][at + i] = values[f];
+      }
   });
-  while (out.size() % LocalParticles<N>::lanes != 0) out.add(Vec3f::Zero(), 0.0f, {});
+  const std::size_t n = out.size(), padded = (n + LocalParticles<N>::lanes - 1) / LocalParticles<N>::lanes * LocalParticles<N>::lanes;
+  out.resize(padded);
+  for (std::size_t i = n; i < padded; ++i) out.volume[i] = 0.0f;
 }
 
 /// A register as a struct, so that arrays of it keep its alignment.
@@ -60,11 +65,11 @@ struct Lanes {
   Float8 value{};
 };
 
-/// h^3 sum_j V_j W(x - x_j, h), then h^3 sum_j V_j A_j W for each field A. Each lane sums on its own, then the lanes
-/// are added in order: the same bytes wherever the arrays lie in memory.
+/// h^3 sum_j V_j W(x - x_j, h), then h^3 sum_j V_j A_j W for each field A, at a point given relative to near.origin in
+/// units of h. Each lane sums on its own, then the lanes are added in order: the same bytes wherever the arrays lie in
+/// memory.
 template <std::size_t N>
-std::array<float, 1 + N> sum_at(const LocalParticles<N>& near, const Vec3& point) {
-  const Vec3f at = ((point - near.origin) / near.h).template cast<float>();
+std::array<float, 1 + N> sum_at(const LocalParticles<N>& near, const Vec3f& at) {
   std::array<Lanes, 1 + N> sum{};
   for (std::size_t j = 0; j < near.size(); j += LocalParticles<N>::lanes) {
     const Float8 dx = load8(&near.x[0][j]) - at[0], dy = load8(&near.x[1][j]) - at[1],
@@ -76,6 +81,11 @@ std::array<float, 1 + N> sum_at(const LocalParticles<N>& near, const Vec3& point
   std::array<float, 1 + N> total{};
   for (std::size_t f = 0; f < 1 + N; ++f) total[f] = sum_of_lanes(sum[f].value);
   return total;
+}
+
+template <std::size_t N>
+std::array<float, 1 + N> sum_at(const LocalParticles<N>& near, const Vec3& point) {
+  return sum_at(near, Vec3f(((point - near.origin) / near.h).template cast<float>()));
 }
 
 }  // namespace smelt

@@ -15,8 +15,8 @@ namespace smelt {
 /// triangles have no area. Which vertices are connected is decided by surfacing/cell_deciders.h. Positions are in
 /// metres.
 ///
-/// Requires: the 7 samples one step below each inside sample are in stored blocks (`allocate_field` sees to that);
-/// otherwise InternalError. Vertices and faces are ordered by block and by cell, on any number of threads.
+/// Requires: the 7 samples one step below each inside sample are in stored blocks, or in `deep` ones next to inside
+/// samples only (`compute_chi` sees to that); otherwise InternalError. Vertices and faces are ordered by block and by cell, on any number of threads.
 TriangleMesh extract_iso_surface(const SparseField& field, float iso);
 
 }  // namespace smelt

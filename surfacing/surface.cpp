@@ -1,11 +1,13 @@
 #include "surfacing/surface.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "surfacing/attributes.h"
 #include "surfacing/marching_cubes.h"
 #include "surfacing/particle_bins.h"
 #include "surfacing/smooth_mesh.h"
 #include "surfacing/sparse_field.h"
+#include "surfacing/surface_region.h"
 #include "surfacing/thin_features.h"
 
 #include <cmath>
@@ -45,8 +47,9 @@ void check_particles(const ParticleFrame& p) {
 
 std::vector<float> sorted_volumes(const ParticleFrame& particles, const ParticleBins& bins) {
   std::vector<float> volume(particles.size());
-  for (std::size_t j = 0; j < volume.size(); ++j)
+  parallel_for_each(volume.size(), [&](std::size_t j) {
     volume[j] = static_cast<float>(particles.mass / particles.density[bins.index[j]]);
+  });
   return volume;
 }
 
@@ -59,15 +62,17 @@ SurfaceMesh build_surface(const ParticleFrame& particles, const SurfacingOptions
   const ParticleBins bins = sort_into_bins(particles.position, 2.0 * h);
   std::vector<float> volume = sorted_volumes(particles, bins);
 
-  const std::vector<float> filling = compute_filling(bins, volume, 2.0 * spacing);
+  const SurfaceRegion region = find_surface_region(bins, volume, spacing);
+  const std::vector<float> filling = compute_filling(bins, volume, 2.0 * spacing, &region);
   if (options.thin_feature_gain > 0.0)
     strengthen_thin_features(volume, bins, filling, h, options.iso_value, options.thin_feature_gain);
 
-  SparseField chi = allocate_field(bins, 2.0 * h, options.cell_over_spacing * spacing, options.memory_limit_bytes);
-  compute_chi(chi, bins, volume, h);
+  const auto iso = static_cast<float>(options.iso_value);
+  const SparseField chi =
+      compute_chi({bins, volume, h}, options.cell_over_spacing * spacing, iso, options.memory_limit_bytes, &region);
 
   SurfaceMesh surface;
-  surface.mesh = extract_iso_surface(chi, static_cast<float>(options.iso_value));
+  surface.mesh = extract_iso_surface(chi, iso);
   if (surface.mesh.triangles.empty())
     fail(
         "surfacing: frame {}: chi stays below the iso-value {} everywhere: take a lower iso_value, finer cells or a "
