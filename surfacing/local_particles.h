@@ -20,15 +20,18 @@ struct LocalParticles {
 
   Vec3 origin = Vec3::Zero();
   double h = 0.0;
+  std::size_t size = 0;  ///< a multiple of `lanes`; the arrays may be longer
   std::array<std::vector<float>, 3> x;
   std::vector<float> volume;
   std::array<std::vector<float>, N> field;
 
-  std::size_t size() const { return volume.size(); }
-  void resize(std::size_t n) {
-    for (auto& a : x) a.resize(n);
-    for (auto& a : field) a.resize(n);
-    volume.resize(n);
+  /// Makes room for n particles, and a register behind them.
+  void reserve(std::size_t n) {
+    n += lanes;
+    if (volume.size() >= n) return;
+    for (auto& a : x) a.resize(2 * n);
+    for (auto& a : field) a.resize(2 * n);
+    volume.resize(2 * n);
   }
 };
 
@@ -37,27 +40,33 @@ struct LocalParticles {
 template <std::size_t N, typename FieldsOf>
 void gather_particles(LocalParticles<N>& out, const ParticleBins& bins, std::span<const float> volume, const Box3& box,
                       double h, FieldsOf&& fields_of) {
-  out.resize(0);
+  constexpr std::size_t lanes = LocalParticles<N>::lanes;
   out.origin = box.lower;
   out.h = h;
   const auto h_per_edge = static_cast<float>(bins.edge / h);
+  std::size_t at = 0;
   for_each_bin(bins, box.lower.array() - 2.0 * h, box.upper.array() + 2.0 * h, [&](std::size_t bin) {
     const Vec3f corner = ((bins.origin(bin) - out.origin) / h).template cast<float>();
     const std::uint32_t begin = bins.begin[bin], count = bins.begin[bin + 1] - begin;
-    const std::size_t at = out.size();
-    out.resize(at + count);
-    for (int a = 0; a < 3; ++a)
-      for (std::uint32_t i = 0; i < count; ++i) out.x[a][at + i] = corner[a] + h_per_edge * bins.offset[a][begin + i];
-    for (std::uint32_t i = 0; i < count; ++i) out.volume[at + i] = volume[begin + i];
+    out.reserve(at + count);
+    // Whole registers: the lanes beyond the bin are overwritten by the next one.
+    for (std::uint32_t i = 0; i < count; i += lanes)
+      for (int a = 0; a < 3; ++a) store8(&out.x[a][at + i], corner[a] + h_per_edge * load8(&bins.offset[a][begin + i]));
+    std::copy_n(volume.begin() + begin, count, out.volume.begin() + static_cast<std::ptrdiff_t>(at));
     if constexpr (N > 0)
       for (std::uint32_t i = 0; i < count; ++i) {
         const auto values = fields_of(begin + i);
         for (std::size_t f = 0; f < N; ++f) out.field[f][at + i] = values[f];
       }
+    at += count;
   });
-  const std::size_t n = out.size(), padded = (n + LocalParticles<N>::lanes - 1) / LocalParticles<N>::lanes * LocalParticles<N>::lanes;
-  out.resize(padded);
-  for (std::size_t i = n; i < padded; ++i) out.volume[i] = 0.0f;
+  out.reserve(at);
+  out.size = (at + lanes - 1) / lanes * lanes;
+  for (std::size_t i = at; i < out.size; ++i) {
+    out.volume[i] = 0.0f;
+    for (auto& a : out.x) a[i] = 0.0f;
+    for (auto& a : out.field) a[i] = 0.0f;
+  }
 }
 
 /// A register as a struct, so that arrays of it keep its alignment.
@@ -71,7 +80,7 @@ struct Lanes {
 template <std::size_t N>
 std::array<float, 1 + N> sum_at(const LocalParticles<N>& near, const Vec3f& at) {
   std::array<Lanes, 1 + N> sum{};
-  for (std::size_t j = 0; j < near.size(); j += LocalParticles<N>::lanes) {
+  for (std::size_t j = 0; j < near.size; j += LocalParticles<N>::lanes) {
     const Float8 dx = load8(&near.x[0][j]) - at[0], dy = load8(&near.x[1][j]) - at[1],
                  dz = load8(&near.x[2][j]) - at[2];
     const Float8 weight = load8(&near.volume[j]) * cubic_spline(sqrt(dx * dx + dy * dy + dz * dz));

@@ -73,7 +73,7 @@ ParticleBins sort_into_bins(std::span<const Vec3> position, double edge) {
     }
   bins.begin.push_back(static_cast<std::uint32_t>(n));
   bins.index.resize(n);
-  for (auto& o : bins.offset) o.resize(n);
+  for (auto& o : bins.offset) o.resize(n + 8);
   parallel_for_each(n, [&](std::size_t i) {
     const std::uint32_t particle = entries[i].particle;
     const Lattice bin = lattice_from_key(entries[i].key);

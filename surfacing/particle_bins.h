@@ -19,7 +19,9 @@ struct ParticleBins {
   std::vector<std::uint64_t> key;            ///< lattice_key of each occupied bin
   std::vector<std::uint32_t> begin;          ///< one more than there are bins
   std::vector<std::uint32_t> index;          ///< sorted particle -> particle of the input
-  std::array<std::vector<float>, 3> offset;  ///< from the lower corner of its bin [edges], in [0, 1]; in sorted order
+  /// From the lower corner of its bin [edges], in [0, 1], in sorted order; 8 more behind them, so that a register may
+  /// be loaded anywhere.
+  std::array<std::vector<float>, 3> offset;
 
   std::size_t n_bins() const { return key.size(); }
   std::size_t n_particles() const { return index.size(); }

@@ -1,11 +1,9 @@
 #include "surfacing/smooth_mesh.h"
 
 #include "core/error.h"
-#include "surfacing/mesh_adjacency.h"
+#include "core/parallel.h"
 
 #include <Eigen/Geometry>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,11 +15,17 @@ namespace {
 constexpr float step = 0.8f;
 constexpr std::size_t grain = 2048;
 
+/// A displacement in a register; the fourth lane is 0.
+using Displacement = Eigen::Vector4f;
+
 template <typename Body>
 void for_each_vertex(std::size_t n, Body&& body) {
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, grain), [&](const tbb::blocked_range<std::size_t>& range) {
-    for (std::size_t v = range.begin(); v != range.end(); ++v) body(v);
-  });
+  parallel_blocks(
+      n,
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) body(v);
+      },
+      grain);
 }
 
 /// mean of neighbours - own value
@@ -34,12 +38,12 @@ Vector umbrella(const VertexNeighbours& near, const std::vector<Vector>& x, std:
 }
 
 /// x += G-steps of x, with a constant source added to the umbrella: source + L x.
-void apply_steps(std::vector<Vec3f>& x, const std::vector<Vec3f>* source, const VertexNeighbours& near,
+void apply_steps(std::vector<Displacement>& x, const std::vector<Displacement>* source, const VertexNeighbours& near,
                  std::span<const float> strength, int passes) {
-  std::vector<Vec3f> next(x.size());
+  std::vector<Displacement> next(x.size());
   for (int pass = 0; pass < passes; ++pass) {
     for_each_vertex(x.size(), [&](std::size_t v) {
-      Vec3f change = umbrella(near, x, v);
+      Displacement change = umbrella(near, x, v);
       if (source) change += (*source)[v];
       next[v] = x[v] + step * strength[v] * change;
     });
@@ -47,82 +51,115 @@ void apply_steps(std::vector<Vec3f>& x, const std::vector<Vec3f>* source, const 
   }
 }
 
-/// Of each piece, in the order of faces: signed volume, the area that moves, and the mean length of an edge.
-struct Measures {
-  std::vector<double> volume, area, edge;
+/// Of a piece: signed volume, the area that moves, and the sums that make the mean length of an edge.
+struct Measure {
+  double volume = 0.0, area = 0.0, edges = 0.0, n_faces = 0.0;
+  double edge() const { return edges / std::max(1.0, n_faces); }
+  void add(const Measure& other) {
+    volume += other.volume;
+    area += other.area;
+    edges += other.edges;
+    n_faces += other.n_faces;
+  }
 };
 
-Measures measure(const TriangleMesh& mesh, const MeshComponents& pieces, std::span<const float> strength) {
-  Measures out{std::vector<double>(pieces.count), std::vector<double>(pieces.count), std::vector<double>(pieces.count)};
-  std::vector<double> n_faces(pieces.count);
+Measure measure_face(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t, std::span<const float> strength, const Vec3& origin) {
+  const Vec3 a = mesh.vertices[t[0]] - origin, b = mesh.vertices[t[1]] - origin, c = mesh.vertices[t[2]] - origin;
+  return {a.dot(b.cross(c)) / 6.0, (b - a).cross(c - a).norm() / 6.0 * (strength[t[0]] + strength[t[1]] + strength[t[2]]),
+          ((b - a).norm() + (c - b).norm() + (a - c).norm()) / 3.0, 1.0};
+}
+
+/// Of each piece. Faces are summed in blocks of fixed size, and these in order: the same bytes on any number of threads.
+std::vector<Measure> measure(const TriangleMesh& mesh, const MeshComponents& pieces, std::span<const float> strength) {
+  struct Part {
+    std::uint32_t piece;
+    Measure measure;
+  };
   const Vec3 origin = mesh.vertices.front();
-  for (const auto& t : mesh.triangles) {
-    const Vec3 a = mesh.vertices[t[0]] - origin, b = mesh.vertices[t[1]] - origin, c = mesh.vertices[t[2]] - origin;
-    const std::uint32_t piece = pieces.of_vertex[t[0]];
-    out.volume[piece] += a.dot(b.cross(c)) / 6.0;
-    out.area[piece] += (b - a).cross(c - a).norm() / 6.0 * (strength[t[0]] + strength[t[1]] + strength[t[2]]);
-    out.edge[piece] += ((b - a).norm() + (c - b).norm() + (a - c).norm()) / 3.0;
-    n_faces[piece] += 1.0;
-  }
-  for (std::size_t p = 0; p < pieces.count; ++p) out.edge[p] /= std::max(1.0, n_faces[p]);
+  std::vector<std::vector<Part>> parts((mesh.triangles.size() + grain - 1) / grain);
+  parallel_blocks(
+      parts.size(),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t block = begin; block < end; ++block)
+          for (std::size_t f = block * grain; f < std::min((block + 1) * grain, mesh.triangles.size()); ++f) {
+            const auto& t = mesh.triangles[f];
+            const std::uint32_t piece = pieces.of_vertex[t[0]];
+            if (parts[block].empty() || parts[block].back().piece != piece) parts[block].push_back({piece, {}});
+            parts[block].back().measure.add(measure_face(mesh, t, strength, origin));
+          }
+      },
+      1);
+  std::vector<Measure> out(pieces.count);
+  for (const auto& block : parts)
+    for (const Part& part : block) out[part.piece].add(part.measure);
   return out;
+}
+
+Vec3f normal_at(const TriangleMesh& mesh, const VertexNeighbours& near, std::size_t v) {
+  const Vec3& a = mesh.vertices[v];
+  Vec3f sum = Vec3f::Zero();
+  for (std::uint32_t n = near.begin[v]; n < near.begin[v + 1]; ++n) {
+    const Vec3f b = (mesh.vertices[near.neighbour[n]] - a).cast<float>(), c = (mesh.vertices[near.third[n]] - a).cast<float>();
+    sum += b.cross(c);
+  }
+  return sum.normalized();
 }
 
 /// Newton's method on the shift of each piece along its normals: d volume / d shift = area. Small pieces that shrank a
 /// lot overshoot at first, hence up to 8 rounds; large ones are done after one. A vertex moves by no more than half an edge a round: where
 /// little of a piece is smoothed that little cannot give back all the volume, and must not fly off in trying.
-void restore_volumes(TriangleMesh& mesh, const MeshComponents& pieces, std::span<const float> strength,
-                     const std::vector<double>& volume) {
+void restore_volumes(TriangleMesh& mesh, const MeshComponents& pieces, const VertexNeighbours& near, std::span<const float> strength,
+                     const std::vector<Measure>& before) {
   for (int round = 0; round < 8; ++round) {
-    const Measures now = measure(mesh, pieces, strength);
+    const std::vector<Measure> now = measure(mesh, pieces, strength);
     std::vector<double> shift(pieces.count, 0.0);
     bool done = true;
     for (std::size_t p = 0; p < shift.size(); ++p) {
-      const double missing = volume[p] - now.volume[p];
-      if (std::abs(missing) <= 1e-5 * std::abs(volume[p]) || now.area[p] <= 0.0) continue;
-      const double most = 0.5 * now.edge[p];  // strengths are 1 at most
-      shift[p] = std::clamp(missing / now.area[p], -most, most);
+      const double missing = before[p].volume - now[p].volume;
+      if (std::abs(missing) <= 1e-5 * std::abs(before[p].volume) || now[p].area <= 0.0) continue;
+      const double most = 0.5 * now[p].edge();  // strengths are 1 at most
+      shift[p] = std::clamp(missing / now[p].area, -most, most);
       done = false;
     }
     if (done) return;
-    const std::vector<Vec3f> normals = compute_vertex_normals(mesh);
+    std::vector<Vec3f> change(mesh.vertices.size());
     for_each_vertex(mesh.vertices.size(), [&](std::size_t v) {
-      mesh.vertices[v] += shift[pieces.of_vertex[v]] * strength[v] * normals[v].cast<double>();
+      const double s = shift[pieces.of_vertex[v]] * strength[v];
+      change[v] = s != 0.0 ? Vec3f(static_cast<float>(s) * normal_at(mesh, near, v)) : Vec3f::Zero();
     });
+    for_each_vertex(mesh.vertices.size(), [&](std::size_t v) { mesh.vertices[v] += change[v].cast<double>(); });
   }
 }
 
 }  // namespace
 
-void smooth_mesh(TriangleMesh& mesh, std::span<const float> strength, int passes) {
+void smooth_mesh(TriangleMesh& mesh, const VertexNeighbours& near, std::span<const float> strength, int passes) {
   CHECK_EQ(strength.size(), mesh.vertices.size());
   if (passes == 0 || mesh.vertices.empty()) return;
   const MeshComponents pieces = find_components(mesh);
-  const Measures before = measure(mesh, pieces, strength);
-  const VertexNeighbours near = find_vertex_neighbours(mesh);
+  const std::vector<Measure> before = measure(mesh, pieces, strength);
 
   // Everything runs on displacements from the start, which are short: single precision then costs nothing at any
   // distance from the origin.
   const std::size_t n = mesh.vertices.size();
-  std::vector<Vec3f> curvature(n), first(n, Vec3f::Zero()), second(n);
-  for_each_vertex(n, [&](std::size_t v) { curvature[v] = umbrella(near, mesh.vertices, v).cast<float>(); });
+  std::vector<Displacement> curvature(n), first(n, Displacement::Zero()), second(n);
+  for_each_vertex(n, [&](std::size_t v) { curvature[v] << umbrella(near, mesh.vertices, v).cast<float>(), 0.0f; });
   apply_steps(first, &curvature, near, strength, passes);  // G x - x
-  for (std::size_t v = 0; v < n; ++v) second[v] = -first[v];
+  for_each_vertex(n, [&](std::size_t v) { second[v] = -first[v]; });
   apply_steps(second, nullptr, near, strength, passes);  // G (x - G x)
-  for_each_vertex(n, [&](std::size_t v) { mesh.vertices[v] += (first[v] + second[v]).cast<double>(); });
+  for_each_vertex(n, [&](std::size_t v) { mesh.vertices[v] += (first[v] + second[v]).head<3>().cast<double>(); });
 
-  restore_volumes(mesh, pieces, strength, before.volume);
+  restore_volumes(mesh, pieces, near, strength, before);
+}
+
+std::vector<Vec3f> compute_vertex_normals(const TriangleMesh& mesh, const VertexNeighbours& near) {
+  std::vector<Vec3f> normals(mesh.vertices.size());
+  for_each_vertex(normals.size(), [&](std::size_t v) { normals[v] = normal_at(mesh, near, v); });
+  return normals;
 }
 
 std::vector<Vec3f> compute_vertex_normals(const TriangleMesh& mesh) {
-  std::vector<Vec3f> normals(mesh.vertices.size(), Vec3f::Zero());
-  for (const auto& t : mesh.triangles) {
-    const Vec3& a = mesh.vertices[t[0]];
-    const Vec3f n = (mesh.vertices[t[1]] - a).cross(mesh.vertices[t[2]] - a).cast<float>();
-    for (const std::uint32_t v : t) normals[v] += n;
-  }
-  for (Vec3f& n : normals) n.normalize();
-  return normals;
+  return compute_vertex_normals(mesh, find_vertex_neighbours(mesh));
 }
 
 }  // namespace smelt

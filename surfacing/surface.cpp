@@ -80,8 +80,9 @@ SurfaceMesh build_surface(const ParticleFrame& particles, const SurfacingOptions
         particles.frame, options.iso_value);
   std::vector<float> strength = compute_attributes(surface, particles, bins, volume, filling, h);
   for (float& s : strength) s = smoothing_strength(s);
-  smooth_mesh(surface.mesh, strength, options.smoothing_passes);
-  surface.normals = compute_vertex_normals(surface.mesh);
+  const VertexNeighbours near = find_vertex_neighbours(surface.mesh);
+  smooth_mesh(surface.mesh, near, strength, options.smoothing_passes);
+  surface.normals = compute_vertex_normals(surface.mesh, near);
   return surface;
 }
 

@@ -15,9 +15,10 @@ namespace smelt {
 ///   h / spacing   bulk   flat surface   sheet one particle thick   thread of 2 x 2   thread   alone
 ///             1   1.00   0.85           0.70                       0.72              0.48     0.32
 ///             2   1.00   0.67           0.35                       0.35              0.12     0.04
-/// With a `region`, 1 for particles whose bins are farther than `filling_reach` nodes from the surface: there c > 0.6.
+/// With a `region`, 1 for particles whose bins are farther than `filling_reach` nodes from it: there c
+/// is above 0.6, which is all that anybody asks.
 std::vector<float> compute_filling(const ParticleBins& bins, std::span<const float> volume, double h, const SurfaceRegion* region = nullptr);
-constexpr double filling_reach = 2.0;
+constexpr double filling_reach = 0.5;
 
 /// Raises the `volume` that particles of thin features carry into chi, so that drops, threads and sheets keep theirs. A
 /// lone particle has chi = 1/(pi (h/spacing)^3) at most, a thread half as much again: below the iso-value both would
