@@ -5,12 +5,18 @@
 #include "surfacing/particle_bins.h"
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <span>
 #include <vector>
 
 namespace smelt {
+
+/// A register as a struct, so that arrays of it keep its alignment.
+struct Lanes {
+  Float8 value{};
+};
 
 /// The particles that can reach any point of a box, as arrays: position relative to `origin` in units of h, volume, and
 /// N fields. Padded to whole lanes with particles of no volume.
@@ -35,8 +41,7 @@ struct LocalParticles {
   }
 };
 
-/// Overwrites `out` with the particles of all bins within 2 h of `box` [m]; `fields_of(j)` gives the fields of sorted
-/// particle j.
+/// Overwrites `out` with the particles within 2 h of `box` [m]; `fields_of(j)` gives the fields of sorted particle j.
 template <std::size_t N, typename FieldsOf>
 void gather_particles(LocalParticles<N>& out, const ParticleBins& bins, std::span<const float> volume, const Box3& box,
                       double h, FieldsOf&& fields_of) {
@@ -44,35 +49,40 @@ void gather_particles(LocalParticles<N>& out, const ParticleBins& bins, std::spa
   out.origin = box.lower;
   out.h = h;
   const auto h_per_edge = static_cast<float>(bins.edge / h);
-  std::size_t at = 0;
+  const Vec3f upper = (box.extent() / h).template cast<float>().array() + 2.0f;
+  std::size_t n = 0;
   for_each_bin(bins, box.lower.array() - 2.0 * h, box.upper.array() + 2.0 * h, [&](std::size_t bin) {
     const Vec3f corner = ((bins.origin(bin) - out.origin) / h).template cast<float>();
-    const std::uint32_t begin = bins.begin[bin], count = bins.begin[bin + 1] - begin;
-    out.reserve(at + count);
-    // Whole registers: the lanes beyond the bin are overwritten by the next one.
-    for (std::uint32_t i = 0; i < count; i += lanes)
-      for (int a = 0; a < 3; ++a) store8(&out.x[a][at + i], corner[a] + h_per_edge * load8(&bins.offset[a][begin + i]));
-    std::copy_n(volume.begin() + begin, count, out.volume.begin() + static_cast<std::ptrdiff_t>(at));
-    if constexpr (N > 0)
-      for (std::uint32_t i = 0; i < count; ++i) {
-        const auto values = fields_of(begin + i);
-        for (std::size_t f = 0; f < N; ++f) out.field[f][at + i] = values[f];
+    const std::uint32_t begin = bins.begin[bin], end = bins.begin[bin + 1];
+    out.reserve(n + end - begin);
+    for (std::uint32_t first = begin; first < end; first += lanes) {
+      std::array<Lanes, 3> x;
+      Mask8 far = beyond(end - first);
+      for (int a = 0; a < 3; ++a) {
+        x[a].value = corner[a] + h_per_edge * load8(&bins.offset[a][first]);
+        far |= (x[a].value <= -2.0f) | (x[a].value >= upper[a]);
       }
-    at += count;
+      const unsigned near = ~bits(far) & 0xffu;
+      for (int a = 0; a < 3; ++a) store8(&out.x[a][n], pack(x[a].value, near));
+      store8(&out.volume[n], pack(load_some(&volume[first], end - first), near));
+      if constexpr (N > 0) {
+        std::size_t to = n;
+        for (unsigned rest = near; rest != 0; rest &= rest - 1, ++to) {
+          const auto values = fields_of(first + static_cast<std::uint32_t>(std::countr_zero(rest)));
+          for (std::size_t f = 0; f < N; ++f) out.field[f][to] = values[f];
+        }
+      }
+      n += static_cast<std::size_t>(std::popcount(near));
+    }
   });
-  out.reserve(at);
-  out.size = (at + lanes - 1) / lanes * lanes;
-  for (std::size_t i = at; i < out.size; ++i) {
+  out.reserve(n);
+  out.size = (n + lanes - 1) / lanes * lanes;
+  for (std::size_t i = n; i < out.size; ++i) {
     out.volume[i] = 0.0f;
     for (auto& a : out.x) a[i] = 0.0f;
     for (auto& a : out.field) a[i] = 0.0f;
   }
 }
-
-/// A register as a struct, so that arrays of it keep its alignment.
-struct Lanes {
-  Float8 value{};
-};
 
 /// h^3 sum_j V_j W(x - x_j, h), then h^3 sum_j V_j A_j W for each field A, at a point given relative to near.origin in
 /// units of h. Each lane sums on its own, then the lanes are added in order: the same bytes wherever the arrays lie in

@@ -10,7 +10,8 @@ namespace smelt {
 
 /// Smooths the vertices of a closed mesh in place and restores the volume of each connected piece.
 ///
-/// One G is `passes` Jacobi steps x_v += 0.8 s_v (mean of neighbours - x_v), s_v = strength[v] in [0, 1]. Used alone, G
+/// One G does what `passes` Jacobi steps x_v += 0.8 s_v (mean of neighbours - x_v) do, s_v = strength[v] in [0, 1], in
+/// about 2 sqrt(passes) steps of unequal size. Used alone, G
 /// shrinks everything; with Tukey's twicing, x' = G x + G (x - G x), a wave that G damps by g is damped by 1 - (1 -
 /// g)^2: noise as before, but shapes larger than the noise keep their size to second order. What volume is lost
 /// nevertheless is put back piece by piece, by an equal shift of its vertices along their normals, weighted with their
