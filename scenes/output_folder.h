@@ -23,6 +23,7 @@ struct OutputFolder {
   std::filesystem::path bodies(int frame) const { return bodies() / fmt::format("bodies.{:04}.json", frame); }
   std::filesystem::path surface_obj(int frame) const { return surfaces() / fmt::format("surface.{:04}.obj", frame); }
   std::filesystem::path surface_vdb(int frame) const { return surfaces() / fmt::format("surface.{:04}.vdb", frame); }
+  std::filesystem::path surface_ply(int frame) const { return surfaces() / fmt::format("surface.{:04}.ply", frame); }
   std::filesystem::path picture(int frame) const { return frames() / fmt::format("frame.{:04}.png", frame); }
 };
 
