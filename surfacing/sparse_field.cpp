@@ -141,7 +141,7 @@ void accumulate_bin(float* sample, const ChiSource& source, const KernelShape& p
     Vec3f centre;
     bool reaches = true;
     for (int a = 0; a < 3; ++a) {
-      centre[a] = corner[a] + cells_per_edge * bins.offset[a][j] + per_metre * s.shift[a];
+      centre[a] = corner[a] + cells_per_edge * bins.offset[a][j];
       reaches = reaches && centre[a] > -s.reach[a] && centre[a] < static_cast<float>(edge - 1) + s.reach[a];
     }
     if (reaches) accumulate_particle(sample, centre, s.m, s.reach, s.weight * source.volume[j]);
@@ -153,7 +153,7 @@ double farthest_reach(const ChiSource& source) {
   double reach = 2.0 * source.h;
   if (source.shapes)
     for (const KernelShape& s : source.shapes->shape)
-      for (int a = 0; a < 3; ++a) reach = std::max(reach, static_cast<double>(s.reach[a] + std::abs(s.shift[a])));
+      for (int a = 0; a < 3; ++a) reach = std::max(reach, static_cast<double>(s.reach[a]));
   return reach;
 }
 

@@ -20,7 +20,7 @@ using Cell = std::array<double, 8>;
 /// A factor for every sample, so that no two are alike: ties, which are many and small, farther apart than others.
 double distinct(std::size_t i, bool is_tie) {
   const double x = 0.6180339887498949 * static_cast<double>(i);
-  return 1.0 + (is_tie ? 1e-2 : 1e-9) * (x - std::floor(x));
+  return 1.0 + (is_tie ? 1e-4 : 1e-9) * (x - std::floor(x));
 }
 
 double value_at(const Cell& f, const Vec3& x) {
