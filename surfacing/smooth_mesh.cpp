@@ -41,7 +41,7 @@ Vector umbrella(const VertexNeighbours& near, const std::vector<Vector>& x, std:
 /// Factors w_k of steps x += w_k s L x (L the umbrella) that do what `passes` steps of 0.8 do, in fewer: prod_k (1 - w_k t)
 /// has the slope -0.8 passes at t = 0, so long waves are damped alike, and stays below 1 % on the rest of [0, 2], where
 /// the eigenvalues of -s L lie. That is a Chebyshev polynomial on [a, 2], which of all polynomials does it in the fewest
-/// steps (Varga 1962, semi-iterative methods): about 2 sqrt(passes).
+/// steps [Varga 1962]: about 2 sqrt(passes).
 std::vector<float> step_factors(int passes) {
   constexpr double ripple = 0.01;
   const double slope = static_cast<double>(step) * passes, decay = std::acosh(1.0 / ripple);
