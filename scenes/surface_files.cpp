@@ -6,20 +6,28 @@
 #include "io/surface_vdb.h"
 #include "surfacing/surface.h"
 
+#include <sys/resource.h>
+
 #include <algorithm>
+#include <cmath>
 #include <fstream>
+#include <limits>
 #include <string>
 
 namespace smelt {
 
 namespace {
 
-/// Free memory of this machine [bytes], as Linux estimates it; without an estimate, no limit.
+/// What this process may still take [bytes]: the machine's free memory as Linux estimates it, or `ulimit -v` where that is less; without either, no
+/// limit.
 double available_memory() {
+  double bytes = std::numeric_limits<double>::infinity();
+  rlimit limit{};
+  if (getrlimit(RLIMIT_AS, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) bytes = static_cast<double>(limit.rlim_cur);
   std::ifstream info("/proc/meminfo");
   for (std::string line; std::getline(info, line);)
-    if (line.starts_with("MemAvailable:")) return 1024.0 * std::stod(line.substr(13));
-  return std::numeric_limits<double>::infinity();
+    if (line.starts_with("MemAvailable:")) return std::min(bytes, 1024.0 * std::stod(line.substr(13)));
+  return bytes;
 }
 
 /// Blue, white, red over [low, high].

@@ -6,10 +6,12 @@
 #include "tests/cli/command_line.h"
 
 #include <fmt/format.h>
+#include <sys/resource.h>
 
 #include <array>
-#include <cstdio>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 
 namespace smelt {
 namespace {
@@ -156,12 +158,17 @@ TEST_F(SurfaceSeries, BadCachesAreNamed) {
 TEST_F(SurfaceSeries, WhatCannotBeIsSaidBeforeItStarts) {
   write_cache("particles.0001.vdb", ball(4.0));
   const std::string cache = output("particles.0001.vdb");
-  // A tenth of a spacing across kilometres does not fit; two particles that far apart make no grid between them, many do.
+  // Drops far from one another, in cells of a tenth of a spacing: 70 GB. Said at once, not when the memory is gone.
   std::vector<Vec3> far;
   for (int i = 0; i < 4000; ++i) far.push_back(Vec3(1.7 * (i % 20), 1.7 * (i / 20 % 20), 1.7 * (i / 400)));
   write_cache("far.vdb", far);
-  expect_refused({"surface", output("far.vdb"), "-o", output("out"), "--spacing_m", "60", "--set", "surface.cell_over_spacing=0.1", "--set",
-                  "surface.kernel_over_spacing=3"}, {"far.vdb"});
+  const Result large = run({"surface", output("far.vdb"), "-o", output("out"), "--set", "surface.cell_over_spacing=0.1", "--set", "surface.kernel_over_spacing=3"}, [] {
+    const rlimit limit{4000000000, 4000000000};
+    setrlimit(RLIMIT_AS, &limit);
+  });
+  EXPECT_EQ(large.status, 3) << large.err;
+  EXPECT_NE(large.err.find("far.vdb"), std::string::npos) << large.err;
+  EXPECT_NE(large.err.find("allowed are 4 GB"), std::string::npos) << large.err;
   expect_refused({"surface", cache, "-o", output("out"), "--attributes", "v,salinity"}, {"particles.0001.vdb", "salinity", "v"});
   expect_refused({"surface", cache, "-o", output("out"), "--attributes", "temperature"}, {"particles.0001.vdb", "temperature"});
   expect_refused({"surface", cache, "-o", output("out"), "--set", "surface.vertex_colours=true"}, {"particles.0001.vdb", "temperature"});
