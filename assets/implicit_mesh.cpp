@@ -49,7 +49,7 @@ TriangleMesh make_implicit_mesh(const std::function<double(const Vec3&)>& distan
         }
   });
   TriangleMesh mesh = extract_iso_surface(field, iso);
-  smooth_mesh(mesh, std::vector<float>(mesh.vertices.size(), 1.0F), passes);
+  smooth_mesh(mesh, find_vertex_neighbours(mesh), std::vector<float>(mesh.vertices.size(), 1.0F), passes);
   return mesh;
 }
 

@@ -1,6 +1,7 @@
 // Seeding by exact predicates against seeding by the sign of OpenVDB's field: the tables of docs/decisions/0007. The
 // agreement itself is tested in tests/core/geometry/inside_oracle_test.cpp.
 
+#include "bench/peak_memory.h"
 #include "core/geometry/inside.h"
 #include "core/geometry/seeding.h"
 #include "core/parallel.h"
@@ -12,23 +13,9 @@
 
 #include <chrono>
 #include <cstdio>
-#include <malloc.h>
 
 namespace smelt {
 namespace {
-
-/// Highest resident memory since the last reset [MiB]; needs Linux's /proc.
-double peak_memory() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.starts_with("VmHWM:")) return std::stod(line.substr(6)) / 1024.0;
-  return std::numeric_limits<double>::quiet_NaN();
-}
-
-void reset_peak_memory() {
-  ::malloc_trim(0);
-  std::ofstream("/proc/self/clear_refs") << "5";
-}
 
 struct Cost {
   double seconds = std::numeric_limits<double>::infinity();  ///< best of three

@@ -8,6 +8,7 @@
 #include "scenes/run_scene.h"
 #include "scenes/scene_reader.h"
 #include "scenes/scene_writer.h"
+#include "scenes/surface_series.h"
 #include "scenes/version.h"
 
 #include <CLI/CLI.hpp>
@@ -119,9 +120,32 @@ void print_check(const SceneOptions& o) {
   for (const std::string& advice : f.advice) fmt::print("advice      {}\n", advice);
 }
 
+/// `smelt surface` on particle files.
+struct SeriesArguments {
+  std::vector<std::string> names;
+  std::optional<double> spacing;
+  std::optional<std::vector<std::string>> attributes;
+};
+
+void print_series(const SeriesArguments& a, const SceneOptions& o) {
+  const auto threads = limit_threads(o.threads);
+  SeriesOptions options{o.folder, o.resume, o.overrides, a.spacing, a.attributes};
+  if (o.folder.empty()) options.folder = std::filesystem::path("out") / std::filesystem::path(a.names.front()).stem().stem();
+  SeriesSummary s;
+  {
+    TerminalProgress progress;
+    s = surface_series(a.names, o.frames, options, progress);
+  }
+  fmt::print("folder    {}\nframes    {} made, {} kept\nspacing   {:.6g} m, {}\n", s.folder.string(), s.n_made, s.n_kept, s.spacing,
+             s.spacing_is_estimated ? "estimated" : a.spacing ? "as given" : "from the files");
+}
+
+bool is_scene(const std::vector<std::string>& names) {
+  return names.size() == 1 && std::filesystem::path(names.front()).extension() == ".toml";
+}
+
 /// The option table.
-void add_scene_options(CLI::App& command, SceneOptions& o, bool makes_frames) {
-  command.add_option("scene", o.scene, "scene file (.toml)")->required();
+void add_common_options(CLI::App& command, SceneOptions& o, bool makes_frames) {
   command.add_option("--set", o.overrides, "set a key of the scene: key.path=value, any number of times")->take_all()->allow_extra_args(false);
   command.add_option("--threads", o.threads, "threads to use; by default all")->check(CLI::Range(1, 4096));
   if (!makes_frames) return;
@@ -164,6 +188,11 @@ void add_picture_options(CLI::App& command, SceneOptions& o) {
   command.add_option("--sheet", o.sheet, "COLUMNSxROWS: a contact sheet of frames evenly spread over the range");
 }
 
+void add_scene_options(CLI::App& command, SceneOptions& o, bool makes_frames) {
+  command.add_option("scene", o.scene, "scene file (.toml)")->required();
+  add_common_options(command, o, makes_frames);
+}
+
 int run_parsed(int argc, char** argv) {
   CLI::App app("smelt: melts, sags, oozes and flows meshes as viscoplastic fluids", "smelt");
   app.set_version_flag("--version", std::string(version));
@@ -187,10 +216,21 @@ int run_parsed(int argc, char** argv) {
     if (stage == Stage::render) add_picture_options(*command, o);
   };
   add_stage("simulate", "particles only", Stage::simulate);
-  add_stage("surface", "surfaces of the particles in the folder", Stage::surface);
+  SeriesArguments series;
+  auto* surface = add("surface", "surfaces of the particles of a shot, or of any particle files", [&] {
+    if (!is_scene(series.names)) return print_series(series, o);
+    if (series.spacing || series.attributes) fail("--spacing_m and --attributes are for particle files; a scene's particles have theirs");
+    o.scene = series.names.front();
+    run_on_scene(o, [](const Scene& s, const RunOptions& r, Progress& p) { return run_stage(s, Stage::surface, r, p); });
+  });
+  surface->add_option("files", series.names, "scene file (.toml), or particle files (.vdb .ply .xyz .csv): names, or one with # for digits, cloud.####.ply")
+      ->required();
+  surface->add_option("--spacing_m", series.spacing, "distance between particles; by default the cache's own, or estimated")->check(CLI::PositiveNumber);
+  surface->add_option("--attributes", series.attributes, "to carry over: v, temperature, viscosity; by default all that are there")->delimiter(',');
+  add_common_options(*surface, o, true);
   add_stage("render", "pictures of the surfaces in the folder", Stage::render);
   add_scene_options(*add("check", "validate a scene and tell what it will take", [&] { print_check(o); }), o, false);
-  add("info", "what a particle cache, checkpoint, surface or mesh holds", [&] { fmt::print("{}", describe_file(file)); })
+  add("info", "what a particle cache or cloud, checkpoint, surface or mesh holds", [&] { fmt::print("{}", describe_file(file)); })
       ->add_option("file", file, "the file")
       ->required();
   add_bench(app, bench, work);

@@ -80,6 +80,13 @@ class Scanner {
     return {x, y, z};
   }
 
+  /// Three numbers, and a colour where there is one.
+  Vec3f next_position() {
+    const float x = next_float(), y = next_float(), z = next_float();
+    if (line_.find_first_not_of(" \t") != std::string_view::npos) next_vector();
+    return {x, y, z};
+  }
+
   /// "a", "a/b", "a//c" or "a/b/c"; a normal must have the index of its vertex.
   std::uint32_t next_corner(std::size_t n_vertices) {
     const std::string_view word = next_word();
@@ -143,16 +150,23 @@ void check_counts(const std::filesystem::path& path, const SurfaceMesh& surface,
 
 }  // namespace
 
-void write_obj(const std::filesystem::path& path, const SurfaceMesh& surface) {
+void write_obj(const std::filesystem::path& path, const SurfaceMesh& surface, std::span<const Vec3f> colours) {
   const TriangleMesh& mesh = surface.mesh;
   CHECK_EQ(surface.normals.size(), mesh.vertices.size());
+  if (!colours.empty()) CHECK_EQ(colours.size(), mesh.vertices.size());
   std::string text =
       fmt::format("{}{} vertices, {} triangles\n", promise_start, mesh.vertices.size(), mesh.triangles.size());
   text.reserve(80 * mesh.vertices.size() + 50 * mesh.triangles.size());
   append_lines(text, mesh.vertices.size(), [&](auto out, std::size_t i) {
     const Vec3f v = mesh.vertices[i].cast<float>();
     check_finite(path, "vertex", i, v);
-    fmt::format_to(out, FMT_COMPILE("v {} {} {}\n"), v.x(), v.y(), v.z());
+    if (colours.empty()) {
+      fmt::format_to(out, FMT_COMPILE("v {} {} {}\n"), v.x(), v.y(), v.z());
+      return;
+    }
+    const Vec3f& c = colours[i];
+    check_finite(path, "colour", i, c);
+    fmt::format_to(out, FMT_COMPILE("v {} {} {} {:.4f} {:.4f} {:.4f}\n"), v.x(), v.y(), v.z(), c.x(), c.y(), c.z());
   });
   append_lines(text, surface.normals.size(), [&](auto out, std::size_t i) {
     const Vec3f& n = surface.normals[i];
@@ -177,7 +191,7 @@ SurfaceMesh read_obj(const std::filesystem::path& path) {
   };
   while (const auto keyword = scanner.next_keyword(see_comment)) {
     if (*keyword == "v") {
-      surface.mesh.vertices.push_back(scanner.next_vector().cast<double>());
+      surface.mesh.vertices.push_back(scanner.next_position().cast<double>());
     } else if (*keyword == "vn") {
       surface.normals.push_back(scanner.next_vector());
     } else if (*keyword == "f") {

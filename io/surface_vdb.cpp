@@ -7,6 +7,7 @@
 
 #include <openvdb/openvdb.h>
 #include <openvdb/tools/Interpolation.h>
+#include <openvdb/tools/LevelSetUtil.h>
 #include <openvdb/tools/SignedFloodFill.h>
 #include <tbb/parallel_for.h>
 
@@ -48,6 +49,15 @@ openvdb::FloatGrid::Ptr make_level_set(const std::vector<BandBlock>& band, float
   openvdb::tools::signedFloodFill(grid->tree());
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   return grid;
+}
+
+/// 1 inside, 0 outside, a ramp as wide as the band inside the surface.
+openvdb::FloatGrid::Ptr make_fog_volume(const openvdb::FloatGrid& level_set) {
+  const openvdb::FloatGrid::Ptr fog = level_set.deepCopy();
+  openvdb::tools::sdfToFogVolume(*fog);
+  fog->clearMetadata();
+  fog->setGridClass(openvdb::GRID_FOG_VOLUME);
+  return fog;
 }
 
 /// A vertex field, interpolated at the nearest point of the surface.
@@ -98,7 +108,7 @@ std::vector<typename Grid::ValueType> sample_at_vertices(const Grid& grid, const
 }  // namespace
 
 void write_surface_vdb(const std::filesystem::path& path, const SurfaceMesh& surface, double voxel_size,
-                       std::int32_t frame, double time) {
+                       std::int32_t frame, double time, bool fog_volume) {
   const std::vector<BandBlock> band = compute_narrow_band(surface.mesh, voxel_size, half_width);
 
   // One grid per field that the surface has.
@@ -107,7 +117,8 @@ void write_surface_vdb(const std::filesystem::path& path, const SurfaceMesh& sur
     grid->setName(name);
     grids.push_back(grid);
   };
-  add(make_level_set(band, static_cast<float>(voxel_size)), "surface");
+  const openvdb::FloatGrid::Ptr level_set = make_level_set(band, static_cast<float>(voxel_size));
+  add(level_set, "surface");
   const auto velocity = make_field<openvdb::Vec3SGrid>(band, surface.mesh, surface.velocity);
   velocity->setVectorType(openvdb::VEC_CONTRAVARIANT_RELATIVE);
   add(velocity, "v");
@@ -117,8 +128,10 @@ void write_surface_vdb(const std::filesystem::path& path, const SurfaceMesh& sur
     add(make_field<openvdb::FloatGrid>(band, surface.mesh, surface.viscosity), "viscosity");
   if (!surface.rest.empty()) add(make_field<openvdb::Vec3SGrid>(band, surface.mesh, surface.rest), "rest");
 
+  for (const auto& grid : grids) grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_size));
+  level_set->insertMeta("half_width_voxels", openvdb::FloatMetadata(half_width));
+  if (fog_volume) add(make_fog_volume(*level_set), "density");
   for (const auto& grid : grids) {
-    grid->setTransform(openvdb::math::Transform::createLinearTransform(voxel_size));
     grid->setCreator("smelt");
     grid->insertMeta("frame", openvdb::Int32Metadata(frame));
     grid->insertMeta("time", openvdb::DoubleMetadata(time));

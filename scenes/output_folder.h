@@ -30,6 +30,7 @@ struct OutputFolder {
   }
   std::filesystem::path sheet() const { return root / "sheet.png"; }
   std::filesystem::path sheet(const std::string& colour_by) const { return root / fmt::format("sheet.{}.png", colour_by); }
+  std::filesystem::path surface_ply(int frame) const { return surfaces() / fmt::format("surface.{:04}.ply", frame); }
   std::filesystem::path picture(int frame) const { return frames() / fmt::format("frame.{:04}.png", frame); }
 };
 

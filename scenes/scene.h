@@ -258,6 +258,14 @@ struct RenderSettings {
   bool exr = false;
 };
 
+/// Which files a surface becomes, beside the OBJ with its level set.
+struct SurfaceOutputs {
+  bool ply = false;             ///< surface.NNNN.ply, with velocity, temperature and viscosity per vertex
+  bool fog_volume = false;      ///< grid `density` in the VDB
+  bool vertex_colours = false;  ///< in the OBJ, from temperature: blue at colour_cold, through white, to red at colour_hot
+  double colour_cold = 300.0, colour_hot = 400.0;  ///< [K]
+};
+
 struct Scene {
   ShotSettings shot;
   ParticleSettings particles;
@@ -274,6 +282,7 @@ struct Scene {
   std::optional<AmbientSettings> ambient;
   std::vector<HeatSourceSettings> heat_sources;
   SurfacingOptions surface;
+  SurfaceOutputs surface_outputs;
   CameraSettings camera;
   std::vector<LightSettings> lights;
   EnvironmentSettings environment;

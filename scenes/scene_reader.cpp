@@ -339,6 +339,18 @@ Scene read_scene(const std::filesystem::path& path, const std::vector<std::strin
   return scene;
 }
 
+Scene read_surface_settings(const std::vector<std::string>& overrides) {
+  toml::table root;
+  SceneErrors errors("--set");
+  for (const std::string& text : overrides) apply_override(root, text, errors);
+  Scene scene;
+  SceneReader reader(root, errors);
+  visit_section(reader, scene, SceneSection::surface);
+  reader.close_scope();
+  errors.throw_if_any();
+  return scene;
+}
+
 std::filesystem::path smelt_folder() {
   if (const char* folder = std::getenv("SMELT_FOLDER")) return folder;
   return SMELT_SOURCE_FOLDER;

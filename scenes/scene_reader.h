@@ -15,6 +15,10 @@ namespace smelt {
 /// mesh file not found.
 Scene read_scene(const std::filesystem::path& path, const std::vector<std::string>& overrides = {});
 
+/// The defaults of [surface] with `overrides` ("surface.iso_value=0.4") applied, in a scene that holds nothing else. Throws Error as
+/// read_scene does; keys of other tables are refused.
+Scene read_surface_settings(const std::vector<std::string>& overrides);
+
 /// The mesh file that a scene means: as given if absolute, else from the scene's folder, else from smelt's own folder.
 /// Throws Error that says where it was looked for.
 std::filesystem::path find_mesh(const Scene& scene, const std::string& mesh);

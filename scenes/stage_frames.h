@@ -6,14 +6,14 @@
 
 #include <chrono>
 #include <filesystem>
-#include <initializer_list>
+#include <vector>
 
 namespace smelt {
 
 /// Measures the cost of one frame of a stage.
 class CostMeter {
  public:
-  StageCost finish(std::initializer_list<std::filesystem::path> written) const {
+  StageCost finish(const std::vector<std::filesystem::path>& written) const {
     StageCost cost;
     cost.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
     for (const auto& path : written) cost.bytes += std::filesystem::file_size(path);
@@ -24,7 +24,7 @@ class CostMeter {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-inline bool all_exist(std::initializer_list<std::filesystem::path> paths) {
+inline bool all_exist(const std::vector<std::filesystem::path>& paths) {
   for (const auto& path : paths)
     if (!std::filesystem::exists(path)) return false;
   return true;

@@ -85,8 +85,8 @@ std::vector<float> average_at_vertices(SurfaceMesh& surface, const ParticleFrame
 
 std::vector<float> compute_attributes(SurfaceMesh& surface, const ParticleFrame& particles, const ParticleBins& bins,
                                       std::span<const float> volume, std::span<const float> extra, double h) {
-  CHECK_EQ(volume.size(), bins.position.size());
-  CHECK_EQ(extra.size(), bins.position.size());
+  CHECK_EQ(volume.size(), bins.n_particles());
+  CHECK_EQ(extra.size(), bins.n_particles());
   if (particles.rest.empty()) return average_at_vertices<n_fields>(surface, particles, bins, volume, extra, h);
   return average_at_vertices<n_fields_with_rest>(surface, particles, bins, volume, extra, h);
 }

@@ -2,6 +2,9 @@
 // Eight floats in one register: AVX2 is the least a machine must have (docs/decisions/0002), and a plain loop over a
 // kernel does not vectorise under the compiler flags of this project, as sqrt may set errno.
 
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <cstring>
 #include <immintrin.h>
 
@@ -26,6 +29,40 @@ inline Float8 positive_part(Float8 v) {
 }
 inline float positive_part(float v) {
   return v > 0.0f ? v : 0.0f;
+}
+
+/// What comparisons of Float8 give: all bits of a lane set where it holds.
+using Mask8 = std::int32_t __attribute__((vector_size(32)));
+
+/// Bit l: lane l holds.
+inline unsigned bits(Mask8 mask) {
+  return static_cast<unsigned>(_mm256_movemask_ps(std::bit_cast<__m256>(mask)));
+}
+/// Holds in the lanes from n on.
+inline Mask8 beyond(std::uint32_t n) {
+  return Mask8{0, 1, 2, 3, 4, 5, 6, 7} >= static_cast<std::int32_t>(n < 8 ? n : 8);
+}
+
+/// The first n floats; 0 in the other lanes.
+inline Float8 load_some(const float* from, std::uint32_t n) {
+  return static_cast<Float8>(_mm256_maskload_ps(from, std::bit_cast<__m256i>(~beyond(n))));
+}
+
+/// The lanes that a mask selects, moved to the front in their order; what is in the others is not said.
+struct Packing {
+  alignas(32) std::array<std::array<std::int32_t, 8>, 256> lane{};
+  constexpr Packing() {
+    for (unsigned mask = 0; mask < 256; ++mask)
+      for (int from = 0, to = 0; from < 8; ++from)
+        if ((mask >> from & 1u) != 0) lane[mask][to++] = from;
+  }
+};
+inline constexpr Packing packing;
+
+inline Float8 pack(Float8 v, unsigned selected) {
+  Mask8 lane;
+  std::memcpy(&lane, &packing.lane[selected], sizeof lane);
+  return static_cast<Float8>(_mm256_permutevar8x32_ps(static_cast<__m256>(v), std::bit_cast<__m256i>(lane)));
 }
 
 /// Lanes added in order.

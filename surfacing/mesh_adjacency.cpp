@@ -11,9 +11,14 @@ VertexNeighbours find_vertex_neighbours(const TriangleMesh& mesh) {
     for (const std::uint32_t v : t) ++out.begin[v + 1];
   std::partial_sum(out.begin.begin(), out.begin.end(), out.begin.begin());
   out.neighbour.resize(3 * mesh.triangles.size());
+  out.third.resize(3 * mesh.triangles.size());
   std::vector<std::uint32_t> next(out.begin.begin(), out.begin.end() - 1);
   for (const auto& t : mesh.triangles)
-    for (int i = 0; i < 3; ++i) out.neighbour[next[t[i]]++] = t[(i + 1) % 3];
+    for (int i = 0; i < 3; ++i) {
+      const std::uint32_t at = next[t[i]]++;
+      out.neighbour[at] = t[(i + 1) % 3];
+      out.third[at] = t[(i + 2) % 3];
+    }
   return out;
 }
 

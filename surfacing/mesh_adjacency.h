@@ -8,10 +8,11 @@
 
 namespace smelt {
 
-/// Neighbours of vertex v: neighbour[begin[v]] .. neighbour[begin[v + 1] - 1], in the order of the faces, each once.
+/// Neighbours of vertex v: neighbour[begin[v]] .. neighbour[begin[v + 1] - 1], in the order of the faces, each once;
+/// face n is (v, neighbour[n], third[n]).
 struct VertexNeighbours {
   std::vector<std::uint32_t> begin;  ///< one more than there are vertices
-  std::vector<std::uint32_t> neighbour;
+  std::vector<std::uint32_t> neighbour, third;
 };
 
 /// For a closed oriented mesh, where every edge out of a vertex is the first edge of exactly one corner of a face.

@@ -1,13 +1,16 @@
 #include "surfacing/surface.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "surfacing/attributes.h"
 #include "surfacing/marching_cubes.h"
 #include "surfacing/particle_bins.h"
 #include "surfacing/smooth_mesh.h"
 #include "surfacing/sparse_field.h"
+#include "surfacing/surface_region.h"
 #include "surfacing/thin_features.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace smelt {
@@ -37,6 +40,10 @@ void check_particles(const ParticleFrame& p) {
     fail("surfacing: frame {}: the particle spacing is {} m and the mass {} kg: both must be positive", p.frame,
          p.spacing, p.mass);
   CHECK_EQ(p.velocity.size(), p.size());
+  const auto elsewhere = [&](const Vec3& x) { return x != p.position.front(); };
+  if (p.size() > 1 && std::none_of(p.position.begin(), p.position.end(), elsewhere))
+    fail("surfacing: frame {}: all {} particles are at one place, ({}, {}, {}) m: no fluid is like that; is the file whole?", p.frame, p.size(),
+         p.position[0][0], p.position[0][1], p.position[0][2]);
   CHECK_EQ(p.density.size(), p.size());
   for (std::size_t i = 0; i < p.size(); ++i)
     if (!(p.density[i] > 0.0f && std::isfinite(p.density[i])))
@@ -45,8 +52,9 @@ void check_particles(const ParticleFrame& p) {
 
 std::vector<float> sorted_volumes(const ParticleFrame& particles, const ParticleBins& bins) {
   std::vector<float> volume(particles.size());
-  for (std::size_t j = 0; j < volume.size(); ++j)
+  parallel_for_each(volume.size(), [&](std::size_t j) {
     volume[j] = static_cast<float>(particles.mass / particles.density[bins.index[j]]);
+  });
   return volume;
 }
 
@@ -59,15 +67,19 @@ SurfaceMesh build_surface(const ParticleFrame& particles, const SurfacingOptions
   const ParticleBins bins = sort_into_bins(particles.position, 2.0 * h);
   std::vector<float> volume = sorted_volumes(particles, bins);
 
-  const std::vector<float> filling = compute_filling(bins, volume, 2.0 * spacing);
+  const SurfaceRegion region = find_surface_region(bins, volume, spacing);
+  const std::vector<float> filling = compute_filling(bins, volume, 2.0 * spacing, &region);
   if (options.thin_feature_gain > 0.0)
     strengthen_thin_features(volume, bins, filling, h, options.iso_value, options.thin_feature_gain);
 
-  SparseField chi = allocate_field(bins, 2.0 * h, options.cell_over_spacing * spacing, options.memory_limit_bytes);
-  compute_chi(chi, bins, volume, h);
+  const auto iso = static_cast<float>(options.iso_value);
+  KernelShapes shapes;
+  if (options.anisotropic) shapes = compute_kernel_shapes(bins, region, spacing, h);
+  const SparseField chi = compute_chi({bins, volume, h, options.anisotropic ? &shapes : nullptr}, options.cell_over_spacing * spacing, iso,
+                                      options.memory_limit_bytes, &region);
 
   SurfaceMesh surface;
-  surface.mesh = extract_iso_surface(chi, static_cast<float>(options.iso_value));
+  surface.mesh = extract_iso_surface(chi, iso);
   if (surface.mesh.triangles.empty())
     fail(
         "surfacing: frame {}: chi stays below the iso-value {} everywhere: take a lower iso_value, finer cells or a "
@@ -75,8 +87,9 @@ SurfaceMesh build_surface(const ParticleFrame& particles, const SurfacingOptions
         particles.frame, options.iso_value);
   std::vector<float> strength = compute_attributes(surface, particles, bins, volume, filling, h);
   for (float& s : strength) s = smoothing_strength(s);
-  smooth_mesh(surface.mesh, strength, options.smoothing_passes);
-  surface.normals = compute_vertex_normals(surface.mesh);
+  const VertexNeighbours near = find_vertex_neighbours(surface.mesh);
+  smooth_mesh(surface.mesh, near, strength, options.smoothing_passes);
+  surface.normals = compute_vertex_normals(surface.mesh, near);
   return surface;
 }
 

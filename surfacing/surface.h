@@ -15,6 +15,8 @@ struct SurfacingOptions {
   /// 0: the bare chi of [P 5-7], in which drops, threads and thin sheets shrink or disappear. 1: particles of such
   /// features weigh more, so that they keep their volume (surfacing/thin_features.h). In [0, 2].
   double thin_feature_gain = 1.0;
+  /// Kernels near the surface are flattened across it and stretched along it (surfacing/kernel_shapes.h).
+  bool anisotropic = false;
   int smoothing_passes = 30;          ///< of the mesh, >= 0; 0 = none; keeps volumes (surfacing/smooth_mesh.h)
   double memory_limit_bytes = 8.0e9;  ///< refuse to start when the grid would need more
 };
@@ -23,7 +25,7 @@ struct SurfacingOptions {
 /// (surfacing/marching_cubes.h), then smoothed; a closed, outward oriented 2-manifold. Velocity, and temperature, viscosity
 /// and rest position where `particles` has them, are SPH averages at the vertices. The grid stands still in the world, so a
 /// resting fluid gives a resting mesh. Same input, same bytes, on any number of threads. Throws Error: no particles; a
-/// position that is not finite (names the particle); an option out of range; a grid that would need more than
+/// position that is not finite (names the particle); all of several particles at one place; an option out of range; a grid that would need more than
 /// `memory_limit_bytes` (says how much).
 SurfaceMesh build_surface(const ParticleFrame& particles, const SurfacingOptions& options);
 

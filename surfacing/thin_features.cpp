@@ -1,25 +1,50 @@
 #include "surfacing/thin_features.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "surfacing/local_particles.h"
 
-#include <tbb/parallel_for.h>
-
+#include <algorithm>
 #include <cmath>
 
 namespace smelt {
 
-std::vector<float> compute_filling(const ParticleBins& bins, std::span<const float> volume, double h) {
-  CHECK_EQ(volume.size(), bins.position.size());
-  std::vector<float> filling(volume.size());
+namespace {
+
+/// h^3 W sums at the particles of one bin.
+template <typename Visit>
+void sum_at_particles(LocalParticles<0>& near, const ParticleBins& bins, std::span<const float> volume, std::size_t bin, double h, Visit&& visit) {
+  gather_particles(near, bins, volume, bins.box(bin), h, [](std::uint32_t) { return std::array<float, 0>{}; });
   const auto scale = static_cast<float>(1.0 / (h * h * h));
-  tbb::parallel_for(std::size_t{0}, bins.n_bins(), [&](std::size_t b) {
-    Box3 box;
-    for (std::uint32_t i = bins.begin[b]; i < bins.begin[b + 1]; ++i) box.extend(bins.position[i]);
-    LocalParticles<0> near;
-    gather_particles(near, bins, volume, box, h, [](std::uint32_t) { return std::array<float, 0>{}; });
-    for (std::uint32_t i = bins.begin[b]; i < bins.begin[b + 1]; ++i)
-      filling[i] = scale * sum_at(near, bins.position[i])[0];
+  for (std::uint32_t j = bins.begin[bin]; j < bins.begin[bin + 1]; ++j) visit(j, scale * sum_at(near, bins.position(bin, j))[0]);
+}
+
+/// Calls body(near, bin) for all bins that `wanted` says yes to, with scratch of each task's own.
+template <typename Wanted, typename Body>
+void for_bins(const ParticleBins& bins, Wanted&& wanted, Body&& body) {
+  parallel_blocks(
+      bins.n_bins(),
+      [&](std::size_t begin, std::size_t end) {
+        LocalParticles<0> near;
+        for (std::size_t b = begin; b < end; ++b)
+          if (wanted(b)) body(near, b);
+      },
+      64);
+}
+
+}  // namespace
+
+std::vector<float> compute_filling(const ParticleBins& bins, std::span<const float> volume, double h, const SurfaceRegion* region) {
+  CHECK_EQ(volume.size(), bins.n_particles());
+  std::vector<float> filling(volume.size(), 1.0f);
+  const auto wanted = [&](std::size_t b) {
+    if (!region) return true;
+    const Box3 box = bins.box(b);
+    const double far = filling_reach * region->node;
+    return region->touches_surface({box.lower.array() - far, box.upper.array() + far});
+  };
+  for_bins(bins, wanted, [&](LocalParticles<0>& near, std::size_t b) {
+    sum_at_particles(near, bins, volume, b, h, [&](std::uint32_t j, float sum) { filling[j] = sum; });
   });
   return filling;
 }
@@ -32,10 +57,18 @@ void strengthen_thin_features(std::span<float> volume, const ParticleBins& bins,
   for (std::size_t j = 0; j < volume.size(); ++j)
     if (filling[j] < full) volume[j] *= std::pow(full / filling[j], exponent);
 
-  const std::vector<float> chi = compute_filling(bins, volume, h);
+  // All sums first, then all changes: the order of bins must not matter.
   const auto least = static_cast<float>(1.3 * iso);
-  for (std::size_t j = 0; j < volume.size(); ++j)
-    if (chi[j] < least) volume[j] *= least / chi[j];
+  const auto may_be_weak = [&](std::size_t b) {
+    return std::any_of(filling.begin() + bins.begin[b], filling.begin() + bins.begin[b + 1], [](float c) { return c < 1.0f; });
+  };
+  std::vector<float> factor(volume.size(), 1.0f);
+  for_bins(bins, may_be_weak, [&](LocalParticles<0>& near, std::size_t b) {
+    sum_at_particles(near, bins, volume, b, h, [&](std::uint32_t j, float chi) {
+      if (chi < least) factor[j] = least / chi;
+    });
+  });
+  for (std::size_t j = 0; j < volume.size(); ++j) volume[j] *= factor[j];
 }
 
 }  // namespace smelt

@@ -2,6 +2,7 @@
 // Keeping drops and threads at their volume, and the smoothing away from them.
 
 #include "surfacing/particle_bins.h"
+#include "surfacing/surface_region.h"
 
 #include <algorithm>
 #include <span>
@@ -14,7 +15,10 @@ namespace smelt {
 ///   h / spacing   bulk   flat surface   sheet one particle thick   thread of 2 x 2   thread   alone
 ///             1   1.00   0.85           0.70                       0.72              0.48     0.32
 ///             2   1.00   0.67           0.35                       0.35              0.12     0.04
-std::vector<float> compute_filling(const ParticleBins& bins, std::span<const float> volume, double h);
+/// With a `region`, 1 for particles whose bins are farther than `filling_reach` nodes from it: there c
+/// is above 0.6, which is all that anybody asks.
+std::vector<float> compute_filling(const ParticleBins& bins, std::span<const float> volume, double h, const SurfaceRegion* region = nullptr);
+constexpr double filling_reach = 0.5;
 
 /// Raises the `volume` that particles of thin features carry into chi, so that drops, threads and sheets keep theirs. A
 /// lone particle has chi = 1/(pi (h/spacing)^3) at most, a thread half as much again: below the iso-value both would

@@ -50,6 +50,21 @@ typename Grid::Ptr find_grid(const openvdb::GridPtrVec& grids, const std::string
   return Grid::create();
 }
 
+TEST(SurfaceVdb, WritesAFogVolumeOnRequest) {
+  write_surface_vdb(temporary("fog.vdb"), make_surface(), 0.02, 12, 0.5, true);
+  const auto grids = read_vdb(temporary("fog.vdb"));
+  ASSERT_EQ(grids.size(), 5u);
+  const auto fog = find_grid<openvdb::FloatGrid>(grids, "density");
+  EXPECT_EQ(fog->getGridClass(), openvdb::GRID_FOG_VOLUME);
+  EXPECT_EQ(fog->getCreator(), "smelt");
+  EXPECT_EQ(fog->metaValue<std::int32_t>("frame"), 12);
+  const auto at = [&](double r) { return fog->tree().getValue(openvdb::Coord::round(fog->worldToIndex(openvdb::Vec3d(centre[0] + r, centre[1], centre[2])))); };
+  EXPECT_EQ(at(0.0), 1.0f);
+  EXPECT_EQ(at(radius + 0.05), 0.0f);
+  EXPECT_NEAR(at(radius - 0.03), 0.5f, 0.2f);
+  EXPECT_EQ(find_grid<openvdb::FloatGrid>(grids, "surface")->metaValue<float>("half_width_voxels"), 3.0f);
+}
+
 TEST(SurfaceVdb, WritesALevelSetInMetres) {
   const SurfaceMesh s = make_surface();
   write_surface_vdb(temporary("level_set.vdb"), s, 0.02, 12, 0.5);

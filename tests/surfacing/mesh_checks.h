@@ -55,6 +55,39 @@ inline std::string find_defect(const TriangleMesh& mesh) {
   return "";
 }
 
+/// A closed piece that winds the wrong way: outer surfaces have positive volume, cavities negative, and a piece inside an odd number of others is a
+/// cavity. Counts crossings of a ray along x from a vertex of each piece through the others.
+inline std::string find_inverted_piece(const TriangleMesh& mesh) {
+  std::vector<std::uint32_t> piece(mesh.vertices.size());
+  for (std::uint32_t v = 0; v < piece.size(); ++v) piece[v] = v;
+  const auto root = [&](std::uint32_t v) {
+    while (piece[v] != v) v = piece[v] = piece[piece[v]];
+    return v;
+  };
+  for (const auto& t : mesh.triangles)
+    for (int i = 1; i < 3; ++i) piece[root(t[0])] = root(t[i]);
+  for (std::uint32_t v = 0; v < piece.size(); ++v) {
+    if (root(v) != v) continue;
+    double volume = 0.0;
+    int n_crossed = 0;
+    // Off the lattice, so that the ray meets no edge.
+    const Vec3 from = mesh.vertices[v] + Vec3(0.0, 1.7e-7, 2.3e-7);
+    for (const auto& t : mesh.triangles) {
+      const Vec3 a = mesh.vertices[t[0]] - from, b = mesh.vertices[t[1]] - from, c = mesh.vertices[t[2]] - from;
+      if (root(t[0]) == v) {
+        volume += a.dot(b.cross(c)) / 6.0;
+        continue;
+      }
+      const auto side = [](const Vec3& p, const Vec3& q) { return p[1] * q[2] - p[2] * q[1]; };
+      const double ab = side(a, b), bc = side(b, c), ca = side(c, a);
+      if ((ab > 0.0) != (bc > 0.0) || (bc > 0.0) != (ca > 0.0)) continue;
+      n_crossed += (bc * a[0] + ca * b[0] + ab * c[0]) / (ab + bc + ca) > 0.0;
+    }
+    if ((volume > 0.0) != (n_crossed % 2 == 0)) return fmt::format("the piece of vertex {} is inside out", v);
+  }
+  return "";
+}
+
 inline double smallest_area(const TriangleMesh& mesh) {
   double smallest = 1e300;
   for (const auto& t : mesh.triangles) {

@@ -34,7 +34,7 @@ TEST(SmoothMesh, KeepsTheVolumeOfEachPiece) {
   const TriangleMesh mesh = two_balls();
   ASSERT_EQ(compute_topology(mesh).n_components, 2u);
   TriangleMesh smooth = mesh;
-  smooth_mesh(smooth, std::vector<float>(mesh.vertices.size(), 1.0f), 30);
+  smooth_mesh(smooth, find_vertex_neighbours(smooth), std::vector<float>(mesh.vertices.size(), 1.0f), 30);
   EXPECT_EQ(testing::find_defect(smooth), "");
   EXPECT_NEAR(compute_volume(smooth) / compute_volume(mesh), 1.0, 1e-3);
   EXPECT_NEAR(volume_beyond(smooth, 16.0) / volume_beyond(mesh, 16.0), 1.0, 2e-3);
@@ -48,7 +48,7 @@ TEST(SmoothMesh, RemovesNoiseAndKeepsTheShape) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     if (mesh.vertices[v][0] < 16.0)
       mesh.vertices[v] += (v % 2 == 0 ? 0.2 : -0.2) * (mesh.vertices[v] - centre).normalized();
-  smooth_mesh(mesh, std::vector<float>(mesh.vertices.size(), 1.0f), 10);
+  smooth_mesh(mesh, find_vertex_neighbours(mesh), std::vector<float>(mesh.vertices.size(), 1.0f), 10);
   double sum = 0.0, n = 0.0;
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     if (mesh.vertices[v][0] > 16.0) continue;
@@ -62,12 +62,12 @@ TEST(SmoothMesh, RemovesNoiseAndKeepsTheShape) {
 TEST(SmoothMesh, LeavesVerticesOfNoStrengthAndZeroPassesAlone) {
   const TriangleMesh mesh = two_balls();
   TriangleMesh same = mesh;
-  smooth_mesh(same, std::vector<float>(mesh.vertices.size(), 1.0f), 0);
+  smooth_mesh(same, find_vertex_neighbours(same), std::vector<float>(mesh.vertices.size(), 1.0f), 0);
   EXPECT_EQ(same.vertices, mesh.vertices);
 
   std::vector<float> strength(mesh.vertices.size());
   for (std::size_t v = 0; v < strength.size(); ++v) strength[v] = mesh.vertices[v][0] < 16.0 ? 1.0f : 0.0f;
-  smooth_mesh(same, strength, 30);
+  smooth_mesh(same, find_vertex_neighbours(same), strength, 30);
   std::size_t moved = 0;
   for (std::size_t v = 0; v < strength.size(); ++v) {
     if (strength[v] == 0.0f) {
@@ -80,7 +80,7 @@ TEST(SmoothMesh, LeavesVerticesOfNoStrengthAndZeroPassesAlone) {
 
 TEST(SmoothMesh, NormalsOfABallPointOutward) {
   const TriangleMesh mesh = two_balls();
-  const std::vector<Vec3f> normals = compute_vertex_normals(mesh);
+  const std::vector<Vec3f> normals = compute_vertex_normals(mesh, find_vertex_neighbours(mesh));
   const Vec3 centre(8.6, 8.3, 8.5);
   for (std::size_t v = 0; v < normals.size(); ++v) {
     ASSERT_NEAR(normals[v].norm(), 1.0f, 1e-5f);

@@ -28,8 +28,7 @@ TEST(SparseField, ChiEqualsTheBruteForceSum) {
   const ParticleBins bins = sort_into_bins(x, 2.0 * h);
   std::vector<float> volume(x.size());
   for (float& v : volume) v = static_cast<float>(0.008 * size(random));
-  SparseField field = allocate_field(bins, 2.0 * h, cell, 1e9);
-  compute_chi(field, bins, volume, h);
+  const SparseField field = compute_chi({bins, volume, h}, cell, 0.5f, 1e9);
 
   const Kernel<3> kernel(h);
   double largest = 0.0;
@@ -39,7 +38,7 @@ TEST(SparseField, ChiEqualsTheBruteForceSum) {
       for (int i = 1095; i <= 1127; i += 3) {
         double exact = 0.0;
         for (std::size_t p = 0; p < x.size(); ++p)
-          exact += volume[p] * kernel.value((cell * Vec3(i, j, k) - bins.position[p]).norm());
+          exact += volume[p] * kernel.value((cell * Vec3(i, j, k) - x[bins.index[p]]).norm());
         largest = std::max(largest, std::abs(exact - field.sample(i, j, k)));
         n_positive += exact > 0.0;
       }
@@ -53,8 +52,7 @@ TEST(SparseField, ChiIsOneInsideALattice) {
   for (const double h : {1.0 * spacing, 1.2 * spacing}) {
     const ParticleBins bins = sort_into_bins(x, 2.0 * h);
     const std::vector<float> volume(x.size(), static_cast<float>(spacing * spacing * spacing));
-    SparseField field = allocate_field(bins, 2.0 * h, 0.5 * spacing, 1e9);
-    compute_chi(field, bins, volume, h);
+    const SparseField field = compute_chi({bins, volume, h}, 0.5 * spacing, 0.5f, 1e9);
     for (int k = 8; k <= 18; ++k)
       for (int j = 8; j <= 18; ++j)
         for (int i = 8; i <= 18; ++i) ASSERT_NEAR(field.sample(i, j, k), 1.0f, 0.02f);
