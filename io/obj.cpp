@@ -80,11 +80,12 @@ class Scanner {
     return {x, y, z};
   }
 
-  /// Three numbers, and a colour where there is one.
+  /// Three numbers, and three more where there is a colour, which is skipped.
   Vec3f next_position() {
     const float x = next_float(), y = next_float(), z = next_float();
-    if (line_.find_first_not_of(" \t") != std::string_view::npos) next_vector();
-    return {x, y, z};
+    const std::string_view red = next_word(), green = next_word(), blue = next_word();
+    if (red.empty() == blue.empty() && red.empty() == green.empty() && next_word().empty()) return {x, y, z};
+    reject("three numbers, or six with a colour", red);
   }
 
   /// "a", "a/b", "a//c" or "a/b/c"; a normal must have the index of its vertex.

@@ -275,7 +275,7 @@ void visit_surface(SchemaVisitor& v, Scene& s) {
              {0.6, 3.0});
     v.number({"thin_feature_gain", "how far drops, threads and sheets one particle thick are kept from shrinking"},
              s.surface.thin_feature_gain, unit_interval);
-    v.boolean({"anisotropic", "kernels stretched along the surface: flatter, at some cost in time"}, s.surface.anisotropic);
+    v.boolean({"anisotropic", "kernels stretched along the surface: truer volumes and edges, at some cost in time"}, s.surface.anisotropic);
     visit_int(v, {"smoothing_passes", "volume-preserving smoothing of the mesh"}, s.surface.smoothing_passes, {0, 1000});
     v.boolean({"ply", "also surface.NNNN.ply: velocity, temperature and viscosity at every vertex"}, s.surface_outputs.ply);
     v.boolean({"fog_volume", "also a grid `density` in the VDB, 1 inside"}, s.surface_outputs.fog_volume);

@@ -13,6 +13,7 @@ namespace smelt {
 namespace {
 
 constexpr double reach_over_spacing = 3.0;
+constexpr double flattening = 0.15;  // power of the variance: measured in docs/decisions/0021
 constexpr double least_stretch = 0.5, most_stretch = 1.15;
 
 /// Sums over the neighbours of a particle: of w, and of w times d_a and d_a d_b, d from the particle [R].
@@ -62,7 +63,7 @@ KernelShape to_shape(const Moments& moments, double h) {
   Vec3 squares = Vec3::Zero();
   double product = 1.0;
   for (int k = 0; k < 3; ++k) {
-    const double measured = std::clamp(std::sqrt(std::max(0.0, axes.eigenvalues()[k]) / bulk_variance), least_stretch, most_stretch);
+    const double measured = std::clamp(std::pow(std::max(0.0, axes.eigenvalues()[k]) / bulk_variance, flattening), least_stretch, most_stretch);
     const double stretch = h * (1.0 + trust * (measured - 1.0));
     const Vec3 e = axes.eigenvectors().col(k);
     inverse += e * e.transpose() / (stretch * stretch);

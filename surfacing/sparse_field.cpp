@@ -266,11 +266,9 @@ SparseField allocate_field(const ParticleBins& bins, double radius, double cell,
         for (int x = ranges[b].low[0]; x <= ranges[b].high[0]; ++x) field.key[at++] = lattice_key(x, y, z);
   });
   sort_unique(field.key);
-  if (region) {
-    field.key = select(field.key, [&](std::uint64_t key) { return region->touches_surface(box_of(key, cell)); });
-    field.deep = find_deep(field, field.key, *region);
-  }
+  if (region) field.key = select(field.key, [&](std::uint64_t key) { return region->touches_surface(box_of(key, cell)); });
   check_memory(static_cast<double>(field.n_blocks()), cell, memory_limit);
+  if (region) field.deep = find_deep(field, field.key, *region);
   return field;
 }
 

@@ -16,7 +16,7 @@ struct SurfacingOptions {
   /// features weigh more, so that they keep their volume (surfacing/thin_features.h). In [0, 2].
   double thin_feature_gain = 1.0;
   /// Kernels near the surface are flattened across it and stretched along it (surfacing/kernel_shapes.h).
-  bool anisotropic = false;
+  bool anisotropic = true;
   int smoothing_passes = 30;          ///< of the mesh, >= 0; 0 = none; keeps volumes (surfacing/smooth_mesh.h)
   double memory_limit_bytes = 8.0e9;  ///< refuse to start when the grid would need more
 };

@@ -18,7 +18,7 @@ namespace smelt {
 /// counts as surface on either side. What f cannot see is a cavity inside the fluid, too small to lower f to
 /// `deep_filling` and yet with chi below the iso-value: none was met in disordered fluids (tests/surfacing).
 struct SurfaceRegion {
-  static constexpr double deep_filling = 0.85;
+  static constexpr double deep_filling = 0.93;
 
   double node = 0.0;                                  ///< distance between nodes [m]
   std::vector<std::uint64_t> key;                     ///< lattice_key of each block with particles, ascending
