@@ -33,7 +33,7 @@ Vec3 path_lab(double s) {
   const double lightness = 0.25 + 0.68 * s, hue = (305.0 - 200.0 * s) * std::numbers::pi / 180.0;
   const auto at = [&](double chroma) { return Vec3(lightness, chroma * std::cos(hue), chroma * std::sin(hue)); };
   // The most colourful that can be shown, up to a limit, by bisection; a little less, so that the path bends gently.
-  double low = 0.0, high = 0.17;
+  double low = 0.0, high = 0.14;
   if (displayable(rgb_from_oklab(at(high)))) low = high;
   for (int i = 0; i < 40 && low < high; ++i) {
     const double middle = 0.5 * (low + high);
@@ -64,8 +64,10 @@ ColourMap::ColourMap() {
   }
   for (int k = 0; k < n_; ++k) {
     const double wanted = length.back() * k / (n_ - 1);
-    const auto above = std::min<std::size_t>(static_cast<std::size_t>(std::lower_bound(length.begin(), length.end(), wanted) - length.begin()), n_fine);
-    colours_[static_cast<std::size_t>(k)] = rgb_from_oklab(path[above]).cwiseMax(0.0).cwiseMin(1.0).cast<float>();
+    const auto above = std::clamp<std::size_t>(static_cast<std::size_t>(std::lower_bound(length.begin(), length.end(), wanted) - length.begin()), 1, n_fine);
+    const double t = (wanted - length[above - 1]) / (length[above] - length[above - 1]);
+    const Vec3 lab = path[above - 1] + t * (path[above] - path[above - 1]);
+    colours_[static_cast<std::size_t>(k)] = rgb_from_oklab(lab).cwiseMax(0.0).cwiseMin(1.0).cast<float>();
   }
 }
 

@@ -46,7 +46,7 @@ TEST_F(PngTest, ReadsBackWhatWasWritten) {
 }
 
 TEST_F(PngTest, RefusesImagesThatDoNotFit) {
-  EXPECT_THROW(write_png(folder_ / "a.png", {}), Error);
+  EXPECT_THROW(write_png(folder_ / "a.png", ImageRgb8{}), Error);
   ImageRgb8 image = make_image(4, 4);
   image.pixels.pop_back();
   EXPECT_THROW(write_png(folder_ / "a.png", image), Error);

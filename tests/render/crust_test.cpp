@@ -38,7 +38,9 @@ TEST(Texture, CellsHaveEdgesAndMiddles) {
     widest = std::max(widest, s.edge);
     n_edges += s.edge < 0.05f ? 1 : 0;
     // Within a cell the nearest point stays the same.
-    if (s.edge > 0.01f) EXPECT_EQ(cell_noise(scattered(i) + Vec3f(0.0f, 5e-3f, 0.0f)).cell, s.cell);
+    if (s.edge > 0.01f) {
+      EXPECT_EQ(cell_noise(scattered(i) + Vec3f(0.0f, 5e-3f, 0.0f)).cell, s.cell);
+    }
   }
   EXPECT_GT(widest, 0.3f);
   EXPECT_GT(n_edges, 100);

@@ -93,6 +93,8 @@ TEST(Glow, SphereShowsItsBlackBody) {
   RenderScene scene = white_room(32, 32);
   scene.sky = {Vec3f::Zero(), Vec3f::Zero(), Vec3f::Zero()};
   scene.look.black_body = BlackBodyLook{0.8f, 100.0f};
+  scene.look.cold.base_colour = scene.look.hot.base_colour = Vec3f::Zero();
+  scene.look.specular = 0.0f;
   SurfaceMesh ball = make_sphere(1.0, Vec3::Zero(), 64);
   ball.temperature.assign(ball.mesh.vertices.size(), 1300.0f);
   const Vec3 expected = (BlackBodyTable()(1300.0f) * (0.8f / 100.0f)).cast<double>();
@@ -224,7 +226,7 @@ TEST(MotionBlur, StripIsAsLongAsTheWay) {
 
 TEST(Layers, SayWhatIsSeen) {
   RenderScene scene = white_room(32, 32);
-  scene.look.crust.reset();
+  scene.look.hot = scene.look.cold;
   SurfaceMesh ball = make_sphere(1.0, Vec3::Zero(), 64);
   ball.temperature.assign(ball.mesh.vertices.size(), 350.0f);
   ball.velocity.assign(ball.mesh.vertices.size(), Vec3f(1.0f, 2.0f, 3.0f));
