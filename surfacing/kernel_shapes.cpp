@@ -61,21 +61,22 @@ KernelShape to_shape(const Moments& moments, double h) {
   const double trust = std::clamp((weight - 2.0) / 3.0, 0.0, 1.0);  // how many neighbours there are: 1 or less to 4 or more
   Mat3 inverse = Mat3::Zero();
   Vec3 squares = Vec3::Zero();
-  double product = 1.0;
+  Vec3 stretches;
   for (int k = 0; k < 3; ++k) {
     const double measured = std::clamp(std::pow(std::max(0.0, axes.eigenvalues()[k]) / bulk_variance, flattening), least_stretch, most_stretch);
     const double stretch = h * (1.0 + trust * (measured - 1.0));
     const Vec3 e = axes.eigenvectors().col(k);
     inverse += e * e.transpose() / (stretch * stretch);
     squares += stretch * stretch * e.cwiseAbs2();
-    product *= stretch;
+    stretches[k] = stretch;
   }
   KernelShape shape;
   const Vec3 reach = 2.0 * squares.cwiseSqrt();
   shape.m = {static_cast<float>(inverse(0, 0)), static_cast<float>(inverse(1, 1)), static_cast<float>(inverse(2, 2)),
              static_cast<float>(inverse(0, 1)), static_cast<float>(inverse(0, 2)), static_cast<float>(inverse(1, 2))};
   for (int a = 0; a < 3; ++a) shape.reach[a] = static_cast<float>(reach[a]);
-  shape.weight = static_cast<float>(1.0 / product);
+  // Eigenvalues ascend: the second is small on threads alone.
+  shape.weight = static_cast<float>(std::min(1.0, stretches[1] / (0.7 * h)) / stretches.prod());
   return shape;
 }
 

@@ -16,9 +16,10 @@ namespace smelt {
 /// volumes, spread to nodes with trilinear weights, over the volume of a node's cell, is at least `deep_filling`. f has
 /// half a spacing more width than chi, and on a flat surface chi = 0.5 lies where f = 0.5, so about a spacing of fluid
 /// counts as surface on either side. What f cannot see is a cavity inside the fluid, too small to lower f to
-/// `deep_filling` and yet with chi below the iso-value: none was met in disordered fluids (tests/surfacing).
+/// `deep_filling` and yet with chi below the iso-value: such cavities, of less than a tenth of a particle's volume, are
+/// filled.
 struct SurfaceRegion {
-  static constexpr double deep_filling = 0.93;
+  static constexpr double deep_filling = 0.90;
 
   double node = 0.0;                                  ///< distance between nodes [m]
   std::vector<std::uint64_t> key;                     ///< lattice_key of each block with particles, ascending

@@ -101,7 +101,7 @@ TEST(Obj, NamesTheLineOfDamage) {
   refuses(box + "f 1//1 2//2 3//1\n", ":6: expected a normal with the index of its vertex");
   refuses(box + "v 1 nan 0\n", ":6: expected a finite number, found 'nan'");
   refuses(box + "v 1 2\n", ":6: expected a finite number, found ''");
-  refuses(box + "v 1 2 3 4\n", ":6: expected three numbers, found '4'");
+  refuses(box + "v 1 2 3 4\n", ":6: expected three numbers, or six with a colour, found '4'");
   refuses(box + "vx 1 2 3\n", ":6: expected v, vn or f, found 'vx'");
   refuses(box + "vn 0 0 1\nf 1 2 3\n", "1 normals for 3 vertices");
   refuses(box, "has no triangles");

@@ -92,6 +92,7 @@ TEST(Surface, ThinFeaturesKeepTheirVolumeAndPiece) {
   }
   SurfacingOptions bare;
   bare.thin_feature_gain = 0.0;
+  bare.anisotropic = false;
   EXPECT_THROW(build_surface(make_lattice(Vec3(1, 1, 40)), bare), Error);
 }
 
