@@ -5,6 +5,7 @@
 #include "surfacing/marching_cubes.h"
 #include "surfacing/mesh_adjacency.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
 #include <algorithm>
