@@ -78,7 +78,8 @@ CoatAlbedo CoatAlbedo::perfect_mirror() {
 
 template <typename Fresnel>
 void CoatAlbedo::tabulate(const Fresnel& fresnel) {
-  constexpr int n = 10;
+  // Many in the polar direction: the tail of GGX that leaves below the horizon is a few per cent of the lobe.
+  constexpr int n_around = 32, n_polar = 64, n = n_around * n_polar;
   for (int r = 0; r < n_rough_; ++r) {
     const float alpha = ggx_alpha(static_cast<float>(r) / (n_rough_ - 1));
     for (int c = 0; c < n_cos_; ++c) {
@@ -86,8 +87,8 @@ void CoatAlbedo::tabulate(const Fresnel& fresnel) {
       const Vec3f wo(std::sqrt(1.0f - cos_out * cos_out), 0.0f, cos_out);
       // Mean of F G / G1 over mirrored visible normals.
       double sum = 0.0;
-      for (int i = 0; i < n * n; ++i) {
-        const Sample2 s{(static_cast<float>(i % n) + 0.5f) / n, (static_cast<float>(i / n) + 0.5f) / n};
+      for (int i = 0; i < n; ++i) {
+        const Sample2 s{(static_cast<float>(i % n_around) + 0.5f) / n_around, (static_cast<float>(i / n_around) + 0.5f) / n_polar};
         const Vec3f half = sample_ggx_visible_normal(wo, alpha, s);
         const Vec3f wi = half * (2.0f * half.dot(wo)) - wo;
         if (wi.z() <= 0.0f) continue;
@@ -95,7 +96,7 @@ void CoatAlbedo::tabulate(const Fresnel& fresnel) {
         sum +=
             fresnel(half.dot(wo)) * (1.0f + lambda_out) / (1.0f + lambda_out + ggx_lambda(wi, alpha));
       }
-      table_[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] = static_cast<float>(sum / (n * n));
+      table_[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] = static_cast<float>(sum / n);
     }
   }
   // 2 integral of E cos d(cos): exact for the piecewise linear table.

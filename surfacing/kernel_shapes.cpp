@@ -76,7 +76,7 @@ KernelShape to_shape(const Moments& moments, double h) {
              static_cast<float>(inverse(0, 1)), static_cast<float>(inverse(0, 2)), static_cast<float>(inverse(1, 2))};
   for (int a = 0; a < 3; ++a) shape.reach[a] = static_cast<float>(reach[a]);
   // Eigenvalues ascend: the second is small on threads alone.
-  shape.weight = static_cast<float>(std::min(1.0, stretches[1] / (0.7 * h)) / stretches.prod());
+  shape.weight = static_cast<float>(std::min(1.0, stretches[1] / (0.75 * h)) / stretches.prod());
   return shape;
 }
 

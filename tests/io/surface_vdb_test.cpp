@@ -53,7 +53,7 @@ typename Grid::Ptr find_grid(const openvdb::GridPtrVec& grids, const std::string
 TEST(SurfaceVdb, WritesAFogVolumeOnRequest) {
   write_surface_vdb(temporary("fog.vdb"), make_surface(), 0.02, 12, 0.5, true);
   const auto grids = read_vdb(temporary("fog.vdb"));
-  ASSERT_EQ(grids.size(), 5u);
+  ASSERT_EQ(grids.size(), 6u);
   const auto fog = find_grid<openvdb::FloatGrid>(grids, "density");
   EXPECT_EQ(fog->getGridClass(), openvdb::GRID_FOG_VOLUME);
   EXPECT_EQ(fog->getCreator(), "smelt");
