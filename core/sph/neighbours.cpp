@@ -54,7 +54,7 @@ CellFrame<Dim> make_cell_frame(std::span<const Vec<Dim>> position, double cell_s
   return {bounds.lower, 1.0 / cell_size};
 }
 
-/// Cells that hold particles, in key order, found by key through an open-addressing table.
+/// Cells that hold particles, in the particles' order, found by key through an open-addressing table.
 class CellTable {
  public:
   struct Cell {
@@ -63,10 +63,10 @@ class CellTable {
     std::int32_t end;
   };
 
-  explicit CellTable(const std::vector<std::uint64_t>& sorted_keys) {
-    const auto n = static_cast<std::int32_t>(sorted_keys.size());
+  explicit CellTable(const std::vector<std::uint64_t>& keys) {
+    const auto n = static_cast<std::int32_t>(keys.size());
     for (std::int32_t i = 0; i < n; ++i) {
-      if (cells_.empty() || cells_.back().key != sorted_keys[i]) cells_.push_back({sorted_keys[i], i, i});
+      if (cells_.empty() || cells_.back().key != keys[i]) cells_.push_back({keys[i], i, i});
       cells_.back().end = i + 1;
     }
     std::size_t capacity = 16;
@@ -111,6 +111,21 @@ int find_ranges(const CellTable& table, std::uint64_t key, std::array<CellTable:
   return n;
 }
 
+/// What cells are sorted by. In 3D, rods of 4 x 4 cells along x one after another: what the particles of a few cells have in reach then lies
+/// in a core's own cache however many particles there are.
+template <int Dim>
+std::uint64_t rank_cell(std::uint64_t key) {
+  if constexpr (Dim < 3) return key;
+  constexpr int bits_in_rod = 2;
+  constexpr std::uint64_t axis_mask = max_cells - 1, rod_mask = (1 << bits_in_rod) - 1;
+  const std::uint64_t x = key & axis_mask, y = (key >> bits_per_axis) & axis_mask, z = key >> (2 * bits_per_axis);
+  std::uint64_t rank = z >> bits_in_rod;
+  rank = (rank << (bits_per_axis - bits_in_rod)) | (y >> bits_in_rod);
+  rank = (rank << bits_per_axis) | x;
+  rank = (rank << bits_in_rod) | (z & rod_mask);
+  return (rank << bits_in_rod) | (y & rod_mask);
+}
+
 template <int Dim>
 std::vector<std::uint64_t> compute_keys(std::span<const Vec<Dim>> position, double cell_size) {
   const CellFrame<Dim> frame = make_cell_frame<Dim>(position, cell_size);
@@ -124,11 +139,12 @@ std::vector<std::uint64_t> compute_keys(std::span<const Vec<Dim>> position, doub
 template <int Dim>
 std::vector<std::int32_t> compute_cell_order(std::span<const Vec<Dim>> position, std::span<const std::int32_t> id,
                                              double cell_size) {
-  const std::vector<std::uint64_t> keys = compute_keys<Dim>(position, cell_size);
+  std::vector<std::uint64_t> ranks = compute_keys<Dim>(position, cell_size);
+  for (std::uint64_t& rank : ranks) rank = rank_cell<Dim>(rank);
   std::vector<std::int32_t> order(position.size());
   std::iota(order.begin(), order.end(), 0);
   tbb::parallel_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
-    return keys[a] != keys[b] ? keys[a] < keys[b] : id[a] < id[b];
+    return ranks[a] != ranks[b] ? ranks[a] < ranks[b] : id[a] < id[b];
   });
   return order;
 }

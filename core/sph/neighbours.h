@@ -23,8 +23,8 @@ struct NeighbourLists {
   }
 };
 
-/// A permutation that puts particles of one grid cell (edge `cell_size` [m]) next to one another, cells in row-major order (x
-/// fastest), particles of a cell by id: it depends on positions and ids only, not on the order they come in.
+/// A permutation that puts particles of one grid cell (edge `cell_size` [m]) next to one another, cells near one another where they
+/// can be, particles of a cell by id: it depends on positions and ids only, not on the order they come in.
 /// Throws InternalError where a position is not finite or the grid would need more than 2^21 cells along an axis.
 template <int Dim>
 std::vector<std::int32_t> compute_cell_order(std::span<const Vec<Dim>> position, std::span<const std::int32_t> id,

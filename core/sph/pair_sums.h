@@ -81,9 +81,9 @@ struct RateSums {
   std::array<Real, Dim> xsph;                   ///< sum m_j (1/rho_i + 1/rho_j)/2 (v_j - v_i) W_ij  [P 6-16, whose 2/(rho_i + rho_j) takes a division a pair and differs by (rho_i - rho_j)^2]
 };
 
-/// Neighbours in one vector: rows of the neighbour lists are padded to a multiple of it. The same on every machine.
+/// Neighbours in the longest vector: rows of the neighbour lists are padded to a multiple of it, on every machine.
 template <typename Real>
-inline constexpr int pair_lanes = 32 / static_cast<int>(sizeof(Real));
+inline constexpr int pair_lanes = 64 / static_cast<int>(sizeof(Real));
 
 /// First pass for particles [begin, end): rates of density, velocity gradient, heat and XSPH from `fields.velocity`.
 /// `smoothing_length` in metres. `sums` has one entry per particle.

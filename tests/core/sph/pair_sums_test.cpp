@@ -1,9 +1,11 @@
 #include "core/sph/pair_sums.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 namespace smelt {
@@ -107,6 +109,62 @@ TEST(PairSums, KernelsAgreeWithTheScalarOnes) {
   expect_kernels_agree<3, double>(1e-13);
   // The quintic is a difference of powers up to seven times itself: some twenty roundings of 1.2e-7.
   expect_kernels_agree<3, float>(3e-6);
+}
+
+/// A jittered block with neighbours of any number, all fields random.
+struct Block {
+  PairFields<3, float> fields;
+  NeighbourLists lists;
+  std::size_t n = 0;
+
+  explicit Block(const PairTerms& terms) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    std::vector<Vec3> position;
+    std::vector<std::int32_t> id;
+    for (int k = 0; k < 9 * 9 * 9; ++k) {
+      id.push_back(k);
+      position.push_back(Vec3(k % 9, k / 9 % 9, k / 81) + 0.3 * Vec3(uniform(random), uniform(random), uniform(random)));
+    }
+    const double reach = 2.0 * h * 2.0;
+    std::vector<Vec3> sorted;
+    for (const std::int32_t k : compute_cell_order<3>(position, id, reach)) sorted.push_back(position[static_cast<std::size_t>(k)]);
+    build_neighbour_lists<3>(sorted, reach, reach, pair_lanes<float>, lists);
+    n = sorted.size();
+    using Fields = PairFields<3, float>;
+    fields.motion.resize(n * Fields::motion_stride);
+    fields.force.resize(n * static_cast<std::size_t>(Fields::force_stride(terms)));
+    fields.heat.resize(n * Fields::heat_stride);
+    for (auto* values : {&fields.motion, &fields.force, &fields.heat})
+      for (float& value : *values) value = static_cast<float>(1.5 + uniform(random));
+    for (std::size_t i = 0; i < n; ++i)
+      for (int a = 0; a < 3; ++a) fields.motion[i * Fields::motion_stride + static_cast<std::size_t>(a)] = static_cast<float>(sorted[i][a]);
+  }
+};
+
+TEST(PairSums, EveryInstructionSetGivesTheSameBytes) {
+  PairTerms terms;
+  terms.stress = terms.hourglass = terms.xsph = true;
+  terms.heat = HeatTerms::mixed;
+  const Block block(terms);
+  const auto evaluate = [&](std::vector<RateSums<3, float>>& rates, std::vector<std::array<float, 3>>& forces) {
+    rates.resize(block.n);
+    forces.resize(block.n);
+    compute_rate_sums<3, float>(block.fields, block.lists, terms, 2.0 * h, 0, block.n, rates.data());
+    compute_force_sums<3, float>(block.fields, block.lists, terms, {2.0 * h, 0.1, 10.0}, 0, block.n, forces.data());
+  };
+  std::vector<RateSums<3, float>> widest_rates, rates;
+  std::vector<std::array<float, 3>> widest_forces, forces;
+  evaluate(widest_rates, widest_forces);
+  hwy::SetSupportedTargetsForTest(HWY_AVX2);
+  hwy::GetChosenTarget().DeInit();
+  evaluate(rates, forces);
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
+  for (std::size_t i = 0; i < block.n; ++i) {
+    ASSERT_EQ(std::memcmp(&rates[i], &widest_rates[i], sizeof rates[i]), 0) << "of particle " << i;
+    ASSERT_EQ(forces[i], widest_forces[i]) << "of particle " << i;
+  }
 }
 
 }  // namespace
