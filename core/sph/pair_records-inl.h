@@ -69,33 +69,39 @@ HWY_INLINE void load_eight_fields(const float* const (&at)[n_lanes], int first, 
   }
 }
 
-/// Loads the first n_fields of the records of one vector of neighbours: fields[f] holds field f of each.
-template <int n_fields, int stride>
-HWY_INLINE void load_records(const float* records, const std::int32_t* index, Simd<float> (&fields)[padded_record(n_fields)]) {
-  constexpr int n_loaded = padded_record(n_fields);
+/// Fields [first, first + n) of the records of one vector of neighbours: fields[f] holds field first + f of each.
+template <int first, int n>
+HWY_INLINE void load_fields(const float* records, int stride, const std::int32_t* index, Simd<float> (&fields)[padded_fields(n)]) {
+  static_assert(first % 4 == 0);
+  constexpr int n_loaded = padded_fields(n);
   const float* at[lanes<float>];
-  for (int lane = 0; lane < lanes<float>; ++lane) at[lane] = records + static_cast<std::size_t>(index[lane]) * stride;
-  for (int first = 0; first + 8 <= n_loaded; first += 8) load_eight_fields(at, first, fields + first);
-  if constexpr (n_loaded % 8 != 0) load_four_fields(at, n_loaded - 4, fields + n_loaded - 4);
+  for (int lane = 0; lane < lanes<float>; ++lane) at[lane] = records + static_cast<std::ptrdiff_t>(index[lane]) * stride;
+  for (int f = 0; f + 8 <= n_loaded; f += 8) load_eight_fields(at, first + f, fields + f);
+  if constexpr (n_loaded % 8 != 0) load_four_fields(at, first + n_loaded - 4, fields + n_loaded - 4);
 }
 
 /// Double precision serves studies, not speed: plain gathers.
-template <int n_fields, int stride>
-HWY_INLINE void load_records(const double* records, const std::int32_t* index,
-                             Simd<double> (&fields)[padded_record(n_fields)]) {
+template <int first, int n>
+HWY_INLINE void load_fields(const double* records, int stride, const std::int32_t* index, Simd<double> (&fields)[padded_fields(n)]) {
   const Tag<double> d;
   const Tag<std::int64_t> di;
   const auto indices = hn::PromoteTo(di, hn::LoadU(hn::Rebind<std::int32_t, decltype(di)>(), index));
   const auto offsets = hn::Mul(indices, hn::Set(di, stride));
-  for (int f = 0; f < n_fields; ++f) fields[f] = hn::GatherIndex(d, records + f, offsets);
+  for (int f = 0; f < n; ++f) fields[f] = hn::GatherIndex(d, records + first + f, offsets);
 }
 
-/// One scalar field of a vector of neighbours.
-template <typename Real>
-HWY_INLINE Simd<Real> load_scalar(const std::vector<Real>& field, const std::int32_t* index) {
-  alignas(64) Real values[lanes<Real>];
-  for (int lane = 0; lane < lanes<Real>; ++lane) values[lane] = field[static_cast<std::size_t>(index[lane])];
-  return hn::Load(Tag<Real>(), values);
+template <int field>
+HWY_INLINE Simd<float> load_field(const float* records, int stride, const std::int32_t* index) {
+  Simd<float> four[4];
+  load_fields<field / 4 * 4, 4>(records, stride, index, four);
+  return four[field % 4];
+}
+
+template <int field>
+HWY_INLINE Simd<double> load_field(const double* records, int stride, const std::int32_t* index) {
+  Simd<double> fields[4];
+  load_fields<field, 1>(records, stride, index, fields);
+  return fields[0];
 }
 
 /// Adds up what `add(index, sums)` adds to `sums`, vectors of lanes, for every vector of neighbours in `row`. Lane k of a group of pair_lanes is
@@ -126,14 +132,14 @@ template <int Dim, typename Real>
 struct Neighbours {
   Simd<Real> x_ij[Dim], v_ij[Dim], volume, density;
 
-  HWY_INLINE Neighbours(const Real* motion_i, const Real* motion, const std::int32_t* index) {
+  HWY_INLINE Neighbours(const Real* record_i, const Real* records, int stride, const std::int32_t* index) {
     using Fields = PairFields<Dim, Real>;
     const Tag<Real> d;
-    Simd<Real> fields[Fields::motion_stride];
-    load_records<2 * Dim + 2, Fields::motion_stride>(motion, index, fields);
-    for (int a = 0; a < Dim; ++a) x_ij[a] = hn::Sub(hn::Set(d, motion_i[a]), fields[a]);
+    Simd<Real> fields[padded_fields(Fields::n_motion)];
+    load_fields<0, Fields::n_motion>(records, stride, index, fields);
+    for (int a = 0; a < Dim; ++a) x_ij[a] = hn::Sub(hn::Set(d, record_i[a]), fields[a]);
     for (int a = 0; a < Dim; ++a)
-      v_ij[a] = hn::Sub(hn::Set(d, motion_i[Fields::velocity_at + a]), fields[Fields::velocity_at + a]);
+      v_ij[a] = hn::Sub(hn::Set(d, record_i[Fields::velocity_at + a]), fields[Fields::velocity_at + a]);
     volume = fields[Fields::volume_at];
     density = fields[Fields::density_at];
   }

@@ -36,15 +36,15 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   constexpr bool with_heat = heat_terms != HeatTerms::none;
   using Fields = PairFields<Dim, Real>;
   using At = RateIndex<Dim>;
+  const Real* records = fields.records.data();
+  constexpr int stride = Fields::stride_of(with_stress);
   [[maybe_unused]] const auto least_balance = hn::Set(d, Real(0.2)), most_balance = hn::Set(d, Real(1.8));
   [[maybe_unused]] const auto one = hn::Set(d, Real(1)), least_sum = hn::Set(d, Real(1e-30));
   for (std::size_t i = begin; i < end; ++i) {
-    const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
-    [[maybe_unused]] const auto inverse_density_i = hn::Set(d, 1 / motion_i[Fields::density_at]);
-    [[maybe_unused]] const Real* heat_i = nullptr;
-    if constexpr (with_heat) heat_i = fields.heat.data() + i * Fields::heat_stride;
+    const Real* record_i = records + i * stride;
+    [[maybe_unused]] const auto inverse_density_i = hn::Set(d, 1 / record_i[Fields::density_at]);
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const Neighbours<Dim, Real> pair(motion_i, fields.motion.data(), index);
+      const Neighbours<Dim, Real> pair(record_i, records, stride, index);
       const auto &x_ij = pair.x_ij, &v_ij = pair.v_ij;
       const auto r2 = dot<Dim, Real>(x_ij, x_ij);
       const auto f = kernel.gradient_over_r(r2);
@@ -66,25 +66,27 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
         }
       }
       if constexpr (with_heat) {
-        Simd<Real> heat_j[Fields::heat_stride];
-        load_records<Fields::n_heat_fields, Fields::heat_stride>(fields.heat.data(), index, heat_j);
-        auto along_i = hn::Mul(x_ij[0], hn::Set(d, heat_i[Fields::balance_at]));
-        auto along_j = hn::Mul(x_ij[0], heat_j[Fields::balance_at]);
+        Simd<Real> heat_j[padded_fields(Fields::n_heat)];
+        load_fields<Fields::heat_at, Fields::n_heat>(records, stride, index, heat_j);
+        const auto of_i = [&](int field) HWY_ATTR { return hn::Set(d, record_i[field]); };
+        const auto of_j = [&](int field) HWY_ATTR { return heat_j[field - Fields::heat_at]; };
+        auto along_i = hn::Mul(x_ij[0], of_i(Fields::balance_at));
+        auto along_j = hn::Mul(x_ij[0], of_j(Fields::balance_at));
         for (int a = 1; a < Dim; ++a) {
-          along_i = hn::MulAdd(x_ij[a], hn::Set(d, heat_i[Fields::balance_at + a]), along_i);
-          along_j = hn::MulAdd(x_ij[a], heat_j[Fields::balance_at + a], along_j);
+          along_i = hn::MulAdd(x_ij[a], of_i(Fields::balance_at + a), along_i);
+          along_j = hn::MulAdd(x_ij[a], of_j(Fields::balance_at + a), along_j);
         }
         const auto balance = hn::Min(hn::Max(hn::Add(one, hn::Sub(along_i, along_j)), least_balance), most_balance);
         const auto balanced_f = hn::Mul(volume_f, balance);
         sum[At::moment_trace] = hn::NegMulAdd(balanced_f, r2, sum[At::moment_trace]);
         const auto imbalance = hn::NegMulAdd(volume_f, along_j, volume_f);
         for (int a = 0; a < Dim; ++a) sum[At::heat_imbalance + a] = hn::MulAdd(imbalance, x_ij[a], sum[At::heat_imbalance + a]);
-        const auto t_ij = hn::Sub(hn::Set(d, heat_i[0]), heat_j[0]);
-        const auto inverse_trace = hn::Add(hn::Set(d, heat_i[Fields::inverse_trace_at]), heat_j[Fields::inverse_trace_at]);
+        const auto t_ij = hn::Sub(of_i(Fields::heat_at), of_j(Fields::heat_at));
+        const auto inverse_trace = hn::Add(of_i(Fields::inverse_trace_at), of_j(Fields::inverse_trace_at));
         auto conducted = hn::Mul(hn::Mul(balanced_f, t_ij), inverse_trace);
         if constexpr (heat_terms == HeatTerms::mixed) {
-          const auto l_j = heat_j[Fields::conductivity_at];
-          const auto l_sum = hn::Max(hn::Add(hn::Set(d, heat_i[Fields::conductivity_at]), l_j), least_sum);
+          const auto l_j = of_j(Fields::conductivity_at);
+          const auto l_sum = hn::Max(hn::Add(of_i(Fields::conductivity_at), l_j), least_sum);
           conducted = hn::Mul(conducted, hn::Div(hn::Add(l_j, l_j), l_sum));
         }
         sum[At::heat] = hn::Add(conducted, sum[At::heat]);
@@ -120,7 +122,8 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
   const double h = parameters.smoothing_length;
   const PairKernel kernel(h);
   using Fields = PairFields<Dim, Real>;
-  constexpr int force_stride = Fields::force_stride(with_stress, with_hourglass);
+  const Real* records = fields.records.data();
+  constexpr int stride = Fields::stride_of(with_stress);
   constexpr int way_at = Dim, n_sums = with_stress ? 2 * Dim : Dim;  // the force is first
   const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
   // Pi_ij = -alpha c mu_ij / (0.5 (rho_i + rho_j)), mu_ij = h v_ij.x_ij / (r^2 + 0.01 h^2) where they approach.
@@ -128,15 +131,13 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
   [[maybe_unused]] const auto hourglass = hn::Set(d, static_cast<Real>(2 * (Dim + 2)));
   const auto one = hn::Set(d, Real(1));
   for (std::size_t i = begin; i < end; ++i) {
-    const Real* force_i = fields.force.data() + i * force_stride;
-    const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
-    const auto density_i = hn::Set(d, motion_i[Fields::density_at]);
-    const auto inverse_density_i = hn::Set(d, 1 / motion_i[Fields::density_at]);
+    const Real* record_i = records + i * stride;
+    const auto density_i = hn::Set(d, record_i[Fields::density_at]);
+    const auto inverse_density_i = hn::Set(d, 1 / record_i[Fields::density_at]);
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const Neighbours<Dim, Real> pair(motion_i, fields.motion.data(), index);
+      const Neighbours<Dim, Real> pair(record_i, records, stride, index);
       const auto &x_ij = pair.x_ij, &v_ij = pair.v_ij;
-      Simd<Real> force[force_stride];
-      load_records<Fields::n_force_fields(with_stress, with_hourglass), force_stride>(fields.force.data(), index, force);
+      const auto specific_pressure_j = load_field<Fields::specific_pressure_at>(records, stride, index);
       const auto r2 = dot<Dim, Real>(x_ij, x_ij);
       const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(r2));
       const auto v_x = dot<Dim, Real>(v_ij, x_ij);
@@ -145,22 +146,25 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
       const auto density_sum = hn::Add(density_i, pair.density);
       const auto inverse = hn::Div(one, hn::Mul(hn::Add(r2, soft), density_sum));
       const auto pi = hn::Mul(hn::Mul(damping, approach), inverse);
-      const auto pressure = hn::Add(hn::Set(d, force_i[0]), force[0]);
+      const auto pressure = hn::Add(hn::Set(d, record_i[Fields::specific_pressure_at]), specific_pressure_j);
       // -m_j (pressure + Pi_ij) F, with Pi_ij = -pi and m_j = V_j rho_j.
       const auto isotropic = hn::Mul(hn::Mul(pair.density, volume_f), hn::Sub(pi, pressure));
       for (int a = 0; a < Dim; ++a) sum[a] = hn::MulAdd(isotropic, x_ij[a], sum[a]);
       if constexpr (with_stress) {
+        constexpr int n_stress = Fields::n_stress(with_hourglass);
+        Simd<Real> stress_j[padded_fields(n_stress)];
+        load_fields<Fields::stress_at, n_stress>(records, stride, index, stress_j);
         // m_j/(rho_i rho_j) = V_j/rho_i.
         const auto scale = hn::Mul(volume_f, inverse_density_i);
         for (int a = 0; a < Dim; ++a) {
-          auto traction = hn::Mul(force[1 + a * Dim], x_ij[0]);
-          for (int b = 1; b < Dim; ++b) traction = hn::MulAdd(force[1 + a * Dim + b], x_ij[b], traction);
+          auto traction = hn::Mul(stress_j[a * Dim], x_ij[0]);
+          for (int b = 1; b < Dim; ++b) traction = hn::MulAdd(stress_j[a * Dim + b], x_ij[b], traction);
           sum[a] = hn::MulAdd(scale, traction, sum[a]);
           // The particle's own stress is the same in all of its pairs.
           sum[way_at + a] = hn::MulAdd(scale, x_ij[a], sum[way_at + a]);
         }
         if constexpr (with_hourglass) {
-          const auto pair_sum = [&](int field) HWY_ATTR { return hn::Add(hn::Set(d, force_i[field]), force[field]); };
+          const auto pair_sum = [&](int field) HWY_ATTR { return hn::Add(hn::Set(d, record_i[field]), stress_j[field - Fields::stress_at]); };
           auto unseen = hn::Mul(pair_sum(Fields::hourglass_at), v_x);
           for (int m = 0; m < n_symmetric<Dim>; ++m) {
             const auto [a, b] = symmetric_entry<Dim>(m);
@@ -176,7 +180,7 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
     for (int a = 0; a < Dim; ++a) {
       acceleration[i][a] = total[a];
       if constexpr (with_stress)
-        for (int b = 0; b < Dim; ++b) acceleration[i][a] += force_i[1 + a * Dim + b] * total[way_at + b];
+        for (int b = 0; b < Dim; ++b) acceleration[i][a] += record_i[Fields::stress_at + a * Dim + b] * total[way_at + b];
     }
   }
 }
@@ -188,25 +192,25 @@ void gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& l
   const double h = parameters.smoothing_length;
   const PairKernel kernel(h);
   using Fields = PairFields<Dim, Real>;
-  constexpr int force_stride = Fields::force_stride(false);
+  const Real* records = fields.records.data();
+  constexpr int stride = Fields::stride_of(false);
   const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
   const auto alpha = hn::Set(d, static_cast<Real>(parameters.artificial_viscosity));
   const auto two_beta = hn::Set(d, static_cast<Real>(2.0 * parameters.quadratic_artificial_viscosity));
   for (std::size_t i = begin; i < end; ++i) {
-    const Real* force_i = fields.force.data() + i * force_stride;
-    const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
+    const Real* record_i = records + i * stride;
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const Neighbours<Dim, Real> pair(motion_i, fields.motion.data(), index);
-      Simd<Real> force[force_stride];
-      load_records<2, force_stride>(fields.force.data(), index, force);
+      const Neighbours<Dim, Real> pair(record_i, records, stride, index);
+      const auto specific_pressure_j = load_field<Fields::specific_pressure_at>(records, stride, index);
+      const auto sound_speed_j = load_field<Fields::sound_speed_at>(records, stride, index);
       const auto r2 = dot<Dim, Real>(pair.x_ij, pair.x_ij);
       const auto v_x = dot<Dim, Real>(pair.v_ij, pair.x_ij);
       // Twice c_ij and twice rho_ij: the halves cancel but for beta's.
       const auto mu = hn::Div(hn::Mul(hn::Set(d, static_cast<Real>(h)), hn::Min(v_x, hn::Zero(d))), hn::Add(r2, soft));
-      const auto sound = hn::Add(hn::Set(d, force_i[1]), force[1]);
-      const auto density = hn::Add(hn::Set(d, motion_i[Fields::density_at]), pair.density);
+      const auto sound = hn::Add(hn::Set(d, record_i[Fields::sound_speed_at]), sound_speed_j);
+      const auto density = hn::Add(hn::Set(d, record_i[Fields::density_at]), pair.density);
       const auto pi = hn::Div(hn::Mul(mu, hn::MulSub(two_beta, mu, hn::Mul(alpha, sound))), density);
-      const auto pressure = hn::Add(hn::Add(hn::Set(d, force_i[0]), force[0]), pi);
+      const auto pressure = hn::Add(hn::Add(hn::Set(d, record_i[Fields::specific_pressure_at]), specific_pressure_j), pi);
       const auto mass_f = hn::Mul(hn::Mul(pair.density, pair.volume), kernel.gradient_over_r(r2));
       const auto weight = hn::Mul(mass_f, pressure);
       for (int a = 0; a < Dim; ++a) sum[a] = hn::NegMulAdd(weight, pair.x_ij[a], sum[a]);
@@ -226,11 +230,11 @@ void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lis
   const PairKernel kernel(h);
   using Fields = PairFields<Dim, Real>;
   for (std::size_t i = begin; i < end; ++i) {
-    const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
+    const Real* record_i = fields.record(i);
     const std::int32_t* row = lists.index.data() + lists.begin[i];
     const std::int32_t* row_end = row + lists.count[i];
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const Neighbours<Dim, Real> pair(motion_i, fields.motion.data(), index);
+      const Neighbours<Dim, Real> pair(record_i, fields.records.data(), fields.stride, index);
       // The padding is the particle itself, whose W is not nothing: it counts once, below.
       const auto n_left = static_cast<std::size_t>(std::max<std::ptrdiff_t>(row_end - index, 0));
       const auto w = hn::IfThenElseZero(hn::FirstN(d, n_left), kernel.value(dot<Dim, Real>(pair.x_ij, pair.x_ij)));
@@ -240,8 +244,8 @@ void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lis
     };
     Real total[2];
     sum_row(row, lists.padded[i], total, add_pairs);
-    const Real self = motion_i[Fields::volume_at] * hn::GetLane(kernel.value(hn::Zero(d)));
-    sums[i].mass = total[0] + motion_i[Fields::density_at] * self;
+    const Real self = record_i[Fields::volume_at] * hn::GetLane(kernel.value(hn::Zero(d)));
+    sums[i].mass = total[0] + record_i[Fields::density_at] * self;
     sums[i].volume = total[1] + self;
   }
 }

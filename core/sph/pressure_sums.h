@@ -13,7 +13,7 @@ struct PressureGradientSums {
   std::array<Real, Dim*(Dim + 1) / 2> moment;    ///< sum V_j (x_j - x_i) (x) grad_w_ij, packed
 };
 
-/// For particles [begin, end), from `fields.motion` and `fields.pressure`. `sums` has one entry per particle.
+/// For particles [begin, end), from motion and pressure in `fields`. `sums` has one entry per particle.
 template <int Dim, typename Real>
 void compute_pressure_gradient_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, KernelType kernel,
                                     double smoothing_length, std::size_t begin, std::size_t end,

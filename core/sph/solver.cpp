@@ -94,6 +94,7 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
     walls_.emplace(WallKernel<Dim>(parameters_.smoothing_length, parameters_.kernel),
                    spacing_,
                    Colliders<Dim>::wall_guard * particle_radius<Dim>(parameters_.particle_volume));
+  fields_.stride = PairFields<Dim, Real>::stride_of(terms_.pair.stress);
   open_boundaries();
   resize_derived();
 }
@@ -252,11 +253,11 @@ void Solver<Dim, Real>::set_summed_densities(bool normalise) {
     // Of the kernel in the fluid: the solid is taken to hold what the fluid does.
     const double rho = density_sums_[i].mass / (normalise ? static_cast<double>(density_sums_[i].volume) : 1.0 - solid);
     particles_.density[i] = rho;
-    Real* record = fields_.motion.data() + i * Fields::motion_stride;
+    Real* record = fields_.record(i);
     record[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
     record[Fields::density_at] = static_cast<Real>(rho);
   });
-  copy_motion_to_images();
+  copy_records_to_images();
 }
 
 template <int Dim, typename Real>
@@ -310,7 +311,7 @@ void Solver<Dim, Real>::apply_wall_rates(const WallNeighbour<Dim>& wall) {
   using Fields = PairFields<Dim, Real>;
   const auto i = static_cast<std::size_t>(wall.particle);
   Vec<Dim> velocity;  // the one that the pair sums were made with
-  for (int a = 0; a < Dim; ++a) velocity[a] = fields_.motion[i * Fields::motion_stride + Fields::velocity_at + a];
+  for (int a = 0; a < Dim; ++a) velocity[a] = fields_.record(i)[Fields::velocity_at + a];
   accumulate_wall_rates<Dim, Real>(wall, colliders_, terms_.pair, velocity, particles_.density[i], material(i).density,
                                    terms_.pair.has_heat() ? particles_.temperature[i] : 0.0,
                                    terms_.pair.has_heat() ? heat_balance_[i].moment_trace : 1.0, rates_[i]);
@@ -319,7 +320,6 @@ void Solver<Dim, Real>::apply_wall_rates(const WallNeighbour<Dim>& wall) {
 /// With dt = 0 nothing advances, but the stress of a law without memory and the XSPH correction follow from the state.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::integrate_rates(double dt) {
-  fields_.force.resize((particles_.size() + images_.size()) * PairFields<Dim, Real>::force_stride(terms_.pair));
   match_driven_densities();
   parallel_for_each(particles_.size(), [&](std::size_t i) {
     const RateSums<Dim, Real>& rate = rates_[i];
@@ -335,7 +335,7 @@ void Solver<Dim, Real>::integrate_rates(double dt) {
     else
       pack_forces(i, corrected_stress);
   });
-  copy_forces_to_images();
+  copy_records_to_images();
 }
 
 /// Advances the extra stress S and returns S L for the force pass.
@@ -400,7 +400,7 @@ void Solver<Dim, Real>::apply_wall_forces(std::size_t slot) {
   Mat<Dim> corrected_stress = Mat<Dim>::Zero();
   if (terms_.pair.stress)
     for (int a = 0; a < Dim; ++a)
-      for (int b = 0; b < Dim; ++b) corrected_stress(a, b) = force_record(i)[1 + a * Dim + b];
+      for (int b = 0; b < Dim; ++b) corrected_stress(a, b) = fields_.record(i)[PairFields<Dim, Real>::stress_at + a * Dim + b];
   for (const WallContact<Dim>& contact : wall.contacts) {
     const PlacedObstacle<Dim>& placed = colliders_.placed()[contact.obstacle];
     const Vec<Dim> a = contact_acceleration<Dim>(contact, placed.obstacle.response, particles_.density[i], pressure(i),

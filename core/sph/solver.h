@@ -158,8 +158,7 @@ class Solver {
   void pack_motion(const std::vector<Vec<Dim>>& velocity);
   void pack_gas(std::size_t i, double dt);
   void pack_gradients();
-  void copy_motion_to_images();
-  void copy_forces_to_images();
+  void copy_records_to_images();
   void sum_densities();
   void set_summed_densities(bool normalise);
   void evaluate_rates();
@@ -168,7 +167,6 @@ class Solver {
   void apply_wall_rates(const WallNeighbour<Dim>& wall);
   void apply_wall_forces(std::size_t slot);
   void sum_body_loads();
-  Real* force_record(std::size_t i) { return fields_.force.data() + i * PairFields<Dim, Real>::force_stride(terms_.pair); }
   double pressure(std::size_t i) const;
   void set_up_heat();
   void find_free_surface();
