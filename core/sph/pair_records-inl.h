@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include <span>
 #include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
@@ -107,7 +108,7 @@ HWY_INLINE Simd<double> load_field(const double* records, int stride, const std:
 /// Adds up what `add(index, sums)` adds to `sums`, vectors of lanes, for every vector of neighbours in `row`. Lane k of a group of pair_lanes is
 /// added to lane k + pair_lanes/2, then these halves are summed, whatever the length of a vector: the same bytes on every machine.
 template <int n_sums, typename Real, typename Add>
-HWY_INLINE void sum_row(const std::int32_t* row, std::size_t n, Real (&total)[n_sums], const Add& add) {
+HWY_INLINE void sum_row(std::span<const std::int32_t> row, Real (&total)[n_sums], const Add& add) {
   const Tag<Real> d;
   const hn::CappedTag<Real, pair_lanes<Real> / 2> half;
   constexpr std::size_t n_parts = pair_lanes<Real> / lanes<Real>;
@@ -116,7 +117,7 @@ HWY_INLINE void sum_row(const std::int32_t* row, std::size_t n, Real (&total)[n_
   for (std::size_t part = 0; part < n_parts; ++part) {
     Simd<Real> sums[n_sums];
     for (auto& sum : sums) sum = hn::Zero(d);
-    for (std::size_t k = part * lanes<Real>; k < n; k += pair_lanes<Real>) add(row + k, sums);
+    for (std::size_t k = part * lanes<Real>; k < row.size(); k += pair_lanes<Real>) add(row.data() + k, sums);
     for (int s = 0; s < n_sums; ++s) {
       if constexpr (n_parts == 1)
         folded[s] = hn::Add(hn::LowerHalf(half, sums[s]), hn::UpperHalf(half, sums[s]));

@@ -98,9 +98,9 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
       }
     };
     Real total[At::n_sums];
-    sum_row(lists.index.data() + lists.begin[i], lists.padded[i], total, add_pairs);
+    sum_row(lists.padded_row(i), total, add_pairs);
 
-    RateSums<Dim, Real>& out = sums[i];
+    RateSums<Dim, Real>& out = sums[i - begin];
     out.density_rate = total[At::density_rate];
     if constexpr (with_stress) std::copy_n(total + At::velocity_moment, Dim * Dim, out.velocity_moment.begin());
     if constexpr (with_stress || with_heat) std::copy_n(total + At::position_moment, n_symmetric<Dim>, out.position_moment.begin());
@@ -176,11 +176,11 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
       }
     };
     Real total[n_sums];
-    sum_row(lists.index.data() + lists.begin[i], lists.padded[i], total, add_pairs);
+    sum_row(lists.padded_row(i), total, add_pairs);
     for (int a = 0; a < Dim; ++a) {
-      acceleration[i][a] = total[a];
+      acceleration[i - begin][a] = total[a];
       if constexpr (with_stress)
-        for (int b = 0; b < Dim; ++b) acceleration[i][a] += record_i[Fields::stress_at + a * Dim + b] * total[way_at + b];
+        for (int b = 0; b < Dim; ++b) acceleration[i - begin][a] += record_i[Fields::stress_at + a * Dim + b] * total[way_at + b];
     }
   }
 }
@@ -217,9 +217,9 @@ void gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& l
       sum[Dim] = hn::MulAdd(weight, v_x, sum[Dim]);
     };
     Real total[Dim + 1];  // the force and the energy
-    sum_row(lists.index.data() + lists.begin[i], lists.padded[i], total, add_pairs);
-    std::copy_n(total, Dim, acceleration[i].begin());
-    energy_rate[i] = Real(0.5) * total[Dim];
+    sum_row(lists.padded_row(i), total, add_pairs);
+    std::copy_n(total, Dim, acceleration[i - begin].begin());
+    energy_rate[i - begin] = Real(0.5) * total[Dim];
   }
 }
 
@@ -231,8 +231,7 @@ void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lis
   using Fields = PairFields<Dim, Real>;
   for (std::size_t i = begin; i < end; ++i) {
     const Real* record_i = fields.record(i);
-    const std::int32_t* row = lists.index.data() + lists.begin[i];
-    const std::int32_t* row_end = row + lists.count[i];
+    const std::int32_t* row_end = lists.begin[i] + lists.count[i];
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
       const Neighbours<Dim, Real> pair(record_i, fields.records.data(), fields.stride, index);
       // The padding is the particle itself, whose W is not nothing: it counts once, below.
@@ -243,10 +242,10 @@ void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lis
       sum[1] = hn::Add(volume_w, sum[1]);
     };
     Real total[2];
-    sum_row(row, lists.padded[i], total, add_pairs);
+    sum_row(lists.padded_row(i), total, add_pairs);
     const Real self = record_i[Fields::volume_at] * hn::GetLane(kernel.value(hn::Zero(d)));
-    sums[i].mass = total[0] + record_i[Fields::density_at] * self;
-    sums[i].volume = total[1] + self;
+    sums[i - begin].mass = total[0] + record_i[Fields::density_at] * self;
+    sums[i - begin].volume = total[1] + self;
   }
 }
 

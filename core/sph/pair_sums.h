@@ -86,7 +86,7 @@ template <typename Real>
 inline constexpr int pair_lanes = 64 / static_cast<int>(sizeof(Real));
 
 /// First pass for particles [begin, end): rates of density, velocity gradient, heat and XSPH from `fields.velocity`.
-/// `smoothing_length` in metres. `sums` has one entry per particle.
+/// `smoothing_length` in metres. `sums` has one entry for each of them.
 template <int Dim, typename Real>
 void compute_rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,
                        double smoothing_length, std::size_t begin, std::size_t end, RateSums<Dim, Real>* sums);
@@ -99,7 +99,7 @@ struct DensitySums {
 };
 
 /// The pass before the others where density is a sum: for particles [begin, end), from positions, volumes and densities in
-/// `fields`. `sums` has one entry per particle.
+/// `fields`. `sums` has one entry for each of them.
 template <int Dim, typename Real>
 void compute_density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, KernelType kernel, double smoothing_length,
                           std::size_t begin, std::size_t end, DensitySums<Real>* sums);
@@ -111,7 +111,7 @@ struct ForceParameters {
   double sound_speed = 0.0;           ///< c [m/s]
 };
 
-/// Second pass for particles [begin, end): the accelerations [m/s^2]
+/// Second pass for particles [begin, end): the accelerations [m/s^2], one entry for each of them,
 ///   - sum m_j (p_i/rho_i^2 + p_j/rho_j^2 + Pi_ij) grad_w_ij + sum m_j/(rho_i rho_j) (S_i L_i + S_j L_j) grad_w_ij
 /// of [P 4-38, 4-46, 6-14 corrected: Pi_ij already divides by a density], with Pi_ij of [P 6-15]. L is the inverse of the position
 /// moment: with it the force is the adjoint of the corrected gradient, so it does no work on a rigid motion and conserves
@@ -135,7 +135,7 @@ struct GasForceParameters {
 
 /// Second pass of an ideal gas for particles [begin, end): the accelerations - sum m_j (p_i/rho_i^2 + p_j/rho_j^2 + Pi_ij) grad_w_ij
 /// [m/s^2], and 1/2 sum m_j (p_i/rho_i^2 + p_j/rho_j^2 + Pi_ij) v_ij.grad_w_ij, the rate of specific internal energy [W/kg], which is
-/// what kinetic energy loses  [S 4.47-4.48].
+/// what kinetic energy loses  [S 4.47-4.48]; one entry for each of them.
 template <int Dim, typename Real>
 void compute_gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, KernelType kernel,
                             const GasForceParameters& parameters, std::size_t begin, std::size_t end,

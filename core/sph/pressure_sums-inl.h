@@ -41,9 +41,9 @@ void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const Neighbour
       }
     };
     Real total[Dim + n_symmetric<Dim>];
-    sum_row(lists.index.data() + lists.begin[i], lists.padded[i], total, add_pairs);
-    std::copy_n(total, Dim, sums[i].gradient.begin());
-    std::copy_n(total + Dim, n_symmetric<Dim>, sums[i].moment.begin());
+    sum_row(lists.padded_row(i), total, add_pairs);
+    std::copy_n(total, Dim, sums[i - begin].gradient.begin());
+    std::copy_n(total + Dim, n_symmetric<Dim>, sums[i - begin].moment.begin());
   }
 }
 
@@ -74,8 +74,8 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
       sum[0] = hn::NegMulAdd(weight, unexplained, sum[0]);
     };
     Real total[1];
-    sum_row(lists.index.data() + lists.begin[i], lists.padded[i], total, add_pairs);
-    sums[i] = 2 * total[0];
+    sum_row(lists.padded_row(i), total, add_pairs);
+    sums[i - begin] = 2 * total[0];
   }
 }
 

@@ -104,17 +104,12 @@ template <int Dim, typename Real>
 void Solver<Dim, Real>::resize_derived() {
   const std::size_t n = particles_.size();
   acceleration_.resize(n, Vec<Dim>::Zero());
-  force_sums_.resize(n);
   rates_.resize(n);
   if (terms_.gas) energy_rate_.resize(n);
   if (terms_.pair.has_heat()) heat_balance_.resize(n);
   if (terms_.pair.xsph) transport_.resize(n, Vec<Dim>::Zero());
   if (terms_.pair.xsph) xsph_.resize(n, Vec<Dim>::Zero());
-  if (walls_ || (terms_.diffusion && terms_.pair.stress)) {
-    pressure_sums_.resize(n);
-    pressure_gradient_.resize(n, Vec<Dim>::Zero());
-  }
-  if (terms_.diffusion) diffusion_sums_.resize(n);
+  if (walls_ || (terms_.diffusion && terms_.pair.stress)) pressure_gradient_.resize(n, Vec<Dim>::Zero());
   if (!colliders_.empty()) clearance_.resize(n, 0.0);
   if (terms_.exchange) free_surface_area_.resize(n, 0.0);
 }
@@ -245,7 +240,7 @@ void Solver<Dim, Real>::set_summed_densities(bool normalise) {
   const std::size_t n = particles_.size();
   density_sums_.resize(n);
   parallel_blocks(n, [&](std::size_t begin, std::size_t end) {
-    compute_density_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end, density_sums_.data());
+    compute_density_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end, density_sums_.data() + begin);
   });
   parallel_for_each(n, [&](std::size_t i) {
     const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr;
@@ -266,7 +261,7 @@ void Solver<Dim, Real>::evaluate_rates() {
   if (walls_ || terms_.diffusion) evaluate_pressure_gradients();
   end_stage(StepStage::wall_rates);
   parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
-    compute_rate_sums<Dim, Real>(fields_, lists_, terms_.pair, parameters_.smoothing_length, begin, end, rates_.data());
+    compute_rate_sums<Dim, Real>(fields_, lists_, terms_.pair, parameters_.smoothing_length, begin, end, rates_.data() + begin);
   });
   if (terms_.diffusion) apply_density_diffusion();
   end_stage(StepStage::rates);
@@ -279,10 +274,10 @@ void Solver<Dim, Real>::evaluate_rates() {
 template <int Dim, typename Real>
 void Solver<Dim, Real>::evaluate_pressure_gradients() {
   const auto evaluate = [&](std::size_t begin, std::size_t end) {
-    compute_pressure_gradient_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end,
-                                              pressure_sums_.data());
+    std::array<PressureGradientSums<Dim, Real>, block_size> sums;
+    compute_pressure_gradient_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end, sums.data());
     for (std::size_t i = begin; i < end; ++i)
-      pressure_gradient_[i] = compute_pressure_gradient<Dim, Real>(pressure_sums_[i], walls_ ? walls_->of(i) : nullptr,
+      pressure_gradient_[i] = compute_pressure_gradient<Dim, Real>(sums[i - begin], walls_ ? walls_->of(i) : nullptr,
                                                                    particles_.density[i], parameters_.gravity);
   };
   if (terms_.diffusion && terms_.pair.stress)
@@ -300,9 +295,10 @@ void Solver<Dim, Real>::apply_density_diffusion() {
   pack_gradients();
   const double strength = parameters_.density_diffusion * parameters_.smoothing_length / parameters_.sound_speed;
   parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
+    std::array<Real, block_size> sums;
     compute_pressure_diffusion_sums<Dim, Real>(fields_, packed_gradient_, lists_, parameters_.kernel, parameters_.smoothing_length, begin,
-                                               end, diffusion_sums_.data());
-    for (std::size_t i = begin; i < end; ++i) rates_[i].density_rate += static_cast<Real>(strength * diffusion_sums_[i]);
+                                               end, sums.data());
+    for (std::size_t i = begin; i < end; ++i) rates_[i].density_rate += static_cast<Real>(strength * sums[i - begin]);
   });
 }
 
@@ -371,12 +367,13 @@ void Solver<Dim, Real>::evaluate_forces() {
   const ForceParameters force{parameters_.smoothing_length, parameters_.artificial_viscosity, parameters_.sound_speed};
   const GasForceParameters gas{parameters_.smoothing_length, parameters_.artificial_viscosity, parameters_.quadratic_artificial_viscosity};
   parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
+    std::array<std::array<Real, Dim>, block_size> sums;
     if (terms_.gas)
-      compute_gas_force_sums<Dim, Real>(fields_, lists_, terms_.pair.kernel, gas, begin, end, force_sums_.data(), energy_rate_.data());
+      compute_gas_force_sums<Dim, Real>(fields_, lists_, terms_.pair.kernel, gas, begin, end, sums.data(), energy_rate_.data() + begin);
     else
-      compute_force_sums<Dim, Real>(fields_, lists_, terms_.pair, force, begin, end, force_sums_.data());
+      compute_force_sums<Dim, Real>(fields_, lists_, terms_.pair, force, begin, end, sums.data());
     for (std::size_t i = begin; i < end; ++i)
-      for (int a = 0; a < Dim; ++a) acceleration_[i][a] = force_sums_[i][a] + parameters_.gravity[a];
+      for (int a = 0; a < Dim; ++a) acceleration_[i][a] = sums[i - begin][a] + parameters_.gravity[a];
   });
   end_stage(StepStage::forces);
   if (walls_) {

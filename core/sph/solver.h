@@ -222,16 +222,13 @@ class Solver {
   std::vector<double> clearance_;  ///< at least so far is each particle from all obstacles [m]; empty without any
   std::vector<DensitySums<Real>> density_sums_;  ///< empty where density follows the continuity equation
   std::optional<Walls<Dim>> walls_;  ///< absent where no obstacle is a wall
-  std::vector<PressureGradientSums<Dim, Real>> pressure_sums_;  ///< like the next two, empty without walls and density diffusion
-  std::vector<Vec<Dim>> pressure_gradient_;                     ///< [Pa/m]
+  std::vector<Vec<Dim>> pressure_gradient_;  ///< [Pa/m]; like the next, empty without walls and density diffusion
   std::vector<Real> packed_gradient_;                           ///< the same for the pair loops
-  std::vector<Real> diffusion_sums_;
   std::vector<double> free_surface_area_;
   std::vector<double> power_density_;  ///< of each heat source of given power at weight 1, at this step [W/m^(Dim - 1)]
   HeatLedger heat_ledger_;
   std::vector<RateSums<Dim, Real>> rates_;
   std::vector<HeatBalance<Dim>> heat_balance_;  ///< empty without heat
-  std::vector<std::array<Real, Dim>> force_sums_;
   std::vector<Vec<Dim>> acceleration_;
   std::vector<Real> energy_rate_;  ///< of an ideal gas [W/kg], or empty
   std::vector<Vec<Dim>>

@@ -40,13 +40,12 @@ struct Pair {
       record[Fields::specific_pressure_at] = static_cast<Real>(k);
       for (int entry = 0; entry < Dim * Dim; ++entry) record[Fields::stress_at + entry] = static_cast<Real>(1 + entry + k);
     }
-    lists.begin = {0, lanes};
+    lists.row_multiple = lanes;
+    lists.blocks = {std::vector<std::int32_t>(lanes, 0), std::vector<std::int32_t>(lanes, 1)};
+    lists.blocks[0][0] = 1;
+    lists.blocks[1][0] = 0;
+    lists.begin = {lists.blocks[0].data(), lists.blocks[1].data()};
     lists.count = {1, 1};
-    lists.padded = {lanes, lanes};
-    lists.index.assign(lanes, 0);
-    lists.index.insert(lists.index.end(), lanes, 1);
-    lists.index[0] = 1;
-    lists.index[lanes] = 0;
     // The distance as the loops see it, rounded.
     double r2 = 0.0;
     for (int a = 0; a < Dim; ++a) r2 += std::pow(static_cast<double>(fields.record(0)[a]), 2);
