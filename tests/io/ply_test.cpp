@@ -21,7 +21,8 @@ std::filesystem::path temporary(const std::string& name) {
 }
 
 SurfaceMesh make_surface() {
-  SurfaceMesh s{make_sphere({0.1, 0.2, 0.3}, 0.7, 3), {}, {}, {}, {}};
+  SurfaceMesh s;
+  s.mesh = make_sphere({0.1, 0.2, 0.3}, 0.7, 3);
   for (const Vec3& x : s.mesh.vertices) {
     s.normals.push_back((x - Vec3(0.1, 0.2, 0.3)).normalized().cast<float>());
     s.velocity.push_back(Vec3f(1.0f, -2.0f, static_cast<float>(x[2])));
