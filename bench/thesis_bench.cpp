@@ -20,7 +20,8 @@ const ThesisShot shots[] = {{"hand", 5000, 0.13},     {"wall", 5000, 0.09},    {
 /// When the last vent closes [s]; 0 without vents.
 double pouring_ends(const Scene& scene) {
   double end = 0.0;
-  for (const EmitterSettings& emitter : scene.emitters) end = std::max(end, emitter.end.value_or(scene.shot.frames / scene.shot.fps));
+  for (const EmitterSettings& emitter : scene.emitters)
+    end = std::max(end, emitter.end.value_or(scene.shot.frames / scene.shot.fps));
   return end;
 }
 
@@ -49,9 +50,13 @@ ThesisBenchResult time_steps(const Scene& scene) {
 
 }  // namespace
 
-std::span<const ThesisShot> thesis_shots() { return shots; }
+std::span<const ThesisShot> thesis_shots() {
+  return shots;
+}
 
-std::filesystem::path scene_file(const ThesisShot& shot) { return smelt_folder() / "scenes" / "thesis" / (shot.name + ".toml"); }
+std::filesystem::path scene_file(const ThesisShot& shot) {
+  return smelt_folder() / "scenes" / "thesis" / (shot.name + ".toml");
+}
 
 ThesisBenchResult bench_thesis_shot(const ThesisShot& shot) {
   const Scene scene = read_scene(scene_file(shot));

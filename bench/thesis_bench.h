@@ -10,7 +10,7 @@ namespace smelt {
 
 /// A row of [P table 6.2].
 struct ThesisShot {
-  std::string name;               ///< the scene is scenes/thesis/<name>.toml
+  std::string name;  ///< the scene is scenes/thesis/<name>.toml
   std::size_t n_particles = 0;
   double seconds_per_step = 0.0;  ///< on a Pentium 4 of 2.4 GHz
 };
@@ -25,8 +25,8 @@ struct ThesisBenchResult {
   double seconds_per_step = 0.0;  ///< mean
 };
 
-/// Times steps of a shot after a short warm-up, which of a scene that pours lasts until all is poured. Throws Error where its scene cannot be
-/// used, DivergedError as the solver does.
+/// Times steps of a shot after a short warm-up, which of a scene that pours lasts until all is poured. Throws Error
+/// where its scene cannot be used, DivergedError as the solver does.
 ThesisBenchResult bench_thesis_shot(const ThesisShot& shot);
 
 }  // namespace smelt

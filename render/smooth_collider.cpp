@@ -20,7 +20,8 @@ ColliderView make_smooth_collider(const TriangleMesh& mesh, double crease_deg) {
     for (const std::uint32_t v : mesh.triangles[face]) {
       Vec3 sum = area[face];
       for (const std::size_t other : faces_at[v])
-        if (other != face && area[other].dot(area[face]) > least_cosine * area[other].norm() * area[face].norm()) sum += area[other];
+        if (other != face && area[other].dot(area[face]) > least_cosine * area[other].norm() * area[face].norm())
+          sum += area[other];
       view.mesh.vertices.push_back(mesh.vertices[v]);
       view.normals.push_back(sum.stableNormalized().cast<float>());
     }

@@ -5,8 +5,9 @@
 
 namespace smelt {
 
-/// The mesh with normals: at each corner of a face the mean, by area, of the face and of those faces at the same vertex that lean less than
-/// `crease_deg` from it. Edges sharper than that stay edges. Each face has three vertices of its own.
+/// The mesh with normals: at each corner of a face the mean, by area, of the face and of those faces at the same vertex
+/// that lean less than `crease_deg` from it. Edges sharper than that stay edges. Each face has three vertices of its
+/// own.
 ColliderView make_smooth_collider(const TriangleMesh& mesh, double crease_deg = 40.0);
 
 }  // namespace smelt

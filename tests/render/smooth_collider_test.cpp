@@ -1,6 +1,7 @@
 // Round things are drawn round, and boxes keep their edges.
 
 #include "render/smooth_collider.h"
+
 #include "tests/meshes.h"
 
 #include <gtest/gtest.h>
@@ -21,8 +22,10 @@ TEST(SmoothCollider, ABoxKeepsItsEdges) {
   ASSERT_EQ(view.mesh.triangles.size(), box.triangles.size());
   for (std::size_t face = 0; face < box.triangles.size(); ++face) {
     const auto& t = box.triangles[face];
-    const Vec3 normal = (box.vertices[t[1]] - box.vertices[t[0]]).cross(box.vertices[t[2]] - box.vertices[t[0]]).normalized();
-    for (const std::uint32_t v : view.mesh.triangles[face]) EXPECT_LT((view.normals[v].cast<double>() - normal).norm(), 1e-6);
+    const Vec3 normal =
+        (box.vertices[t[1]] - box.vertices[t[0]]).cross(box.vertices[t[2]] - box.vertices[t[0]]).normalized();
+    for (const std::uint32_t v : view.mesh.triangles[face])
+      EXPECT_LT((view.normals[v].cast<double>() - normal).norm(), 1e-6);
   }
 }
 
