@@ -7,11 +7,15 @@
 #include <fmt/format.h>
 
 #include "assets/chair.h"
+#include "assets/extruded_text.h"
 #include "assets/hand.h"
 #include <cstdio>
 #include <filesystem>
 
 namespace {
+
+/// Of the Debian package fonts-dejavu-core.
+constexpr const char* font = "/usr/share/fonts/truetype/dejavu/DejaVuSans-Bold.ttf";
 
 void write_mesh(const std::filesystem::path& path, smelt::TriangleMesh mesh) {
   smelt::SurfaceMesh surface;
@@ -32,7 +36,8 @@ int main(int argc, char** argv) {
   try {
     const std::filesystem::path folder = argv[1];
     write_mesh(folder / "chair.obj", smelt::make_chair(0.45));
-    write_mesh(folder / "hand.obj", smelt::make_hand(0.018));
+    write_mesh(folder / "hand.obj", smelt::make_hand(0.012));
+    write_mesh(folder / "letters.obj", smelt::make_extruded_text(font, "CGF 2007", 0.26, 0.03));
   } catch (const smelt::Error& error) {
     fmt::print(stderr, "{}\n", error.what());
     return 3;

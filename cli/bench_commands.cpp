@@ -1,6 +1,7 @@
 #include "cli/bench_commands.h"
 
 #include "bench/step_bench.h"
+#include "bench/thesis_bench.h"
 #include "scenes/version.h"
 
 #include <fmt/format.h>
@@ -51,6 +52,27 @@ void print_terms_bench(std::size_t n_particles, bool as_json) {
       all["terms"][c.name] = to_json(r);
     else
       fmt::print("| {} | {:.0f} | {:.4f} | {:.2f} |\n", c.name, r.bytes_per_particle, r.seconds_per_step, r.particle_steps_per_second() / 1e6);
+  }
+  if (as_json) print_json(std::move(all));
+}
+
+void print_thesis_bench(const std::string& only, bool as_json) {
+  nlohmann::ordered_json all;
+  if (!as_json)
+    fmt::print("| shot | particles | seconds a step | table 6.2: particles | seconds a step | times as fast |\n|---|---|---|---|---|---|\n");
+  for (const ThesisShot& shot : thesis_shots()) {
+    if (!only.empty() && shot.name != only) continue;
+    const ThesisBenchResult r = bench_thesis_shot(shot);
+    const double times_as_fast = shot.seconds_per_step / r.seconds_per_step;
+    if (as_json)
+      all["thesis"][shot.name] = {{"particles", r.n_particles},
+                                  {"seconds_per_step", r.seconds_per_step},
+                                  {"table_particles", shot.n_particles},
+                                  {"table_seconds_per_step", shot.seconds_per_step},
+                                  {"times_as_fast", times_as_fast}};
+    else
+      fmt::print("| {} | {} | {:.5f} | {} | {:.2f} | {:.0f} |\n", shot.name, r.n_particles, r.seconds_per_step, shot.n_particles,
+                 shot.seconds_per_step, times_as_fast);
   }
   if (as_json) print_json(std::move(all));
 }

@@ -1,5 +1,6 @@
 #include "cli/commands.h"
 
+#include "bench/thesis_bench.h"
 #include "cli/bench_commands.h"
 #include "cli/terminal_progress.h"
 #include "core/error.h"
@@ -156,6 +157,7 @@ void add_common_options(CLI::App& command, SceneOptions& o, bool makes_frames) {
 
 struct BenchOptions {
   std::size_t n_particles = 100000;
+  std::string shot;
   int threads = 0;
   bool json = false;
 };
@@ -163,20 +165,26 @@ struct BenchOptions {
 void add_bench(CLI::App& app, BenchOptions& o, std::function<void()>& work) {
   CLI::App* bench = app.add_subcommand("bench", "how fast this machine is");
   bench->require_subcommand(1);
-  const auto add = [&](const char* name, const char* what, void (*print)(std::size_t, bool)) {
+  const auto add = [&](const char* name, const char* what, std::function<void()> print) {
     CLI::App* command = bench->add_subcommand(name, what);
-    command->add_option("--particles", o.n_particles, "about how many; 100000 unless said")->check(CLI::Range(std::size_t{100}, std::size_t{100000000}));
     command->add_option("--threads", o.threads, "threads to use; by default all")->check(CLI::Range(1, 4096));
     command->add_flag("--json", o.json, "for machines");
     command->callback([&o, &work, print] {
       work = [&o, print] {
         const auto threads = limit_threads(o.threads);
-        print(o.n_particles, o.json);
+        print();
       };
     });
+    return command;
   };
-  add("step", "particle-steps a second of a full melting step", print_step_bench);
-  add("terms", "what each term of a scene costs", print_terms_bench);
+  for (CLI::App* command : {add("step", "particle-steps a second of a full melting step", [&o] { print_step_bench(o.n_particles, o.json); }),
+                            add("terms", "what each term of a scene costs", [&o] { print_terms_bench(o.n_particles, o.json); })})
+    command->add_option("--particles", o.n_particles, "about how many; 100000 unless said")->check(CLI::Range(std::size_t{100}, std::size_t{100000000}));
+  std::vector<std::string> shots;
+  for (const ThesisShot& shot : thesis_shots()) shots.push_back(shot.name);
+  add("thesis", "seconds per iteration of the shots of Paiva (2007), table 6.2, beside the table's", [&o] { print_thesis_bench(o.shot, o.json); })
+      ->add_option("--shot", o.shot, "this one alone")
+      ->check(CLI::IsMember(shots));
 }
 
 void add_picture_options(CLI::App& command, SceneOptions& o) {

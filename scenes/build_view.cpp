@@ -3,6 +3,7 @@
 #include "io/exr.h"
 #include "io/height_field.h"
 #include "render/daylight.h"
+#include "render/smooth_collider.h"
 #include "scenes/build_simulation.h"
 #include "scenes/collider_motion.h"
 #include "scenes/scene_reader.h"
@@ -166,7 +167,7 @@ RenderScene build_view(const Scene& scene) {
   for (const ColliderSettings& collider : scene.colliders)
     if (collider.mesh != "ground") {
       TriangleMesh& mesh = obstacles[view.colliders.size()];
-      view.colliders.push_back(is_height_field(collider.mesh) ? terrain_view(std::move(mesh)) : ColliderView{std::move(mesh), {}, {}});
+      view.colliders.push_back(is_height_field(collider.mesh) ? terrain_view(std::move(mesh)) : make_smooth_collider(mesh));
       set_finish(collider, view.colliders.back());
     }
   return view;
@@ -187,18 +188,22 @@ void place_colliders(const Scene& scene, double time, const std::vector<BodyPose
       continue;
     }
     const TriangleMesh& mesh = at_rest[shown].mesh;
+    const auto move_to = [&](const Pose<3>& pose) {
+      drawn_view.mesh = moved(mesh, pose);
+      for (std::size_t v = 0; v < drawn_view.normals.size(); ++v)
+        drawn_view.normals[v] = pose.rotation.cast<float>() * at_rest[shown].normals[v];
+    };
     const Motion<3> motion = to_motion(collider, mesh);
     const auto body = std::find_if(bodies.begin(), bodies.end(), [&](const BodyPose& b) { return b.collider == static_cast<int>(k); });
     if (body != bodies.end()) {
-      drawn_view.mesh = moved(mesh, body->pose);
+      move_to(body->pose);
       drawn_view.velocity = vertex_velocities(*body, drawn_view.mesh);
     } else if (!motion.still() && !collider.rigid()) {
-      drawn_view.mesh = moved(mesh, pose_at(motion, time));
+      move_to(pose_at(motion, time));
       drawn_view.velocity = vertex_velocities(motion, mesh, time, std::max(view.camera.shutter, 1e-3 / scene.shot.fps));
     } else {
       continue;
     }
-    if (!at_rest[shown].normals.empty()) drawn_view.normals = compute_vertex_normals(drawn_view.mesh);
   }
 }
 

@@ -187,6 +187,11 @@ TEST_F(CommandLine, OddCollidersAreWarnedOf) {
 TEST_F(CommandLine, BenchAnswersForPeopleAndMachines) {
   EXPECT_NE(run({"bench", "step", "--particles", "500"}).out.find("million particle-steps/s"), std::string::npos);
   EXPECT_NE(run({"bench", "terms", "--particles", "500", "--json"}).out.find("\"bytes_per_particle\""), std::string::npos);
+  const std::string shot = run({"bench", "thesis", "--shot", "wall"}).out;
+  EXPECT_NE(shot.find("| wall | "), std::string::npos) << shot;
+  EXPECT_EQ(shot.find("| candle | "), std::string::npos) << shot;
+  EXPECT_NE(run({"bench", "thesis", "--shot", "wall", "--json"}).out.find("\"times_as_fast\""), std::string::npos);
+  EXPECT_EQ(run({"bench", "thesis", "--shot", "teapot"}).status, 2);
   EXPECT_EQ(run({"bench"}).status, 2);
 }
 
