@@ -1,10 +1,10 @@
 // A stiff blob in rigid motion: no viscous force, surface included, and a spin that lasts.
 
+#include "bench/cases/set_up.h"
 #include "core/sph/kernel.h"
 #include "core/sph/rheology.h"
 #include "core/sph/stress_update.h"
 #include "tests/accuracy/measure.h"
-#include "tests/accuracy/set_up.h"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

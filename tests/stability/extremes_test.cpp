@@ -1,7 +1,7 @@
 // Scenes at the edge of what the method can be asked: each must end, finite and with no energy from nowhere.
 
+#include "bench/cases/set_up.h"
 #include "core/sph/rheology.h"
-#include "tests/accuracy/set_up.h"
 #include "tests/stability/watch.h"
 
 #include <Eigen/Geometry>
