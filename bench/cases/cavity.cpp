@@ -88,8 +88,8 @@ Case make_case() {
           .profile_x = "height on the middle line / side",
           .profile_y = "horizontal velocity / lid speed",
           .methods = {"as the tests have it"},
-          .quick = {10, 20, 30},
-          .full = {10, 20, 40, 60},
+          .quick = {10, 20, 30, 40},
+          .full = {20, 30, 40, 60, 80},
           .run = run_case};
 }
 

@@ -89,8 +89,8 @@ Case make_case() {
           .profile_x = "T = t sqrt(2g/a)",
           .profile_y = "front / a",
           .methods = {"Koshizuka & Oka 1996", "Martin & Moyce 1952, a = 1.125 in", "Martin & Moyce 1952, a = 2.25 in"},
-          .quick = {8, 12, 20},
-          .full = {10, 20, 40, 60},
+          .quick = {10, 20, 30},
+          .full = {10, 20, 40, 60, 80},
           .run = run_case};
 }
 

@@ -127,8 +127,8 @@ Case make_plane_case() {
           .profile_x = "time [s]",
           .profile_y = "front [m]",
           .methods = {"corrected divergence", "plain"},
-          .quick = {10, 12.5, 15},
-          .full = {12.5, 15, 20},
+          .quick = {10, 15, 20},
+          .full = {12.5, 15, 20, 30},
           .run = [](std::size_t method, double per_metre) { return run_plane_current(choices_of(method, per_metre, 14.0)); }};
 }
 
@@ -145,7 +145,7 @@ Case make_benchmark_case() {
           .profile_y = "front [m]",
           .methods = {"corrected divergence", "plain"},
           .quick = {5, 6, 7.5},
-          .full = {6, 7.5, 10},
+          .full = {6, 7.5, 10, 14},
           .run = [](std::size_t method, double per_metre) { return run_viscous_dam_break(choices_of(method, per_metre, 20.0)); }};
 }
 

@@ -156,8 +156,8 @@ Case make_case() {
           .profile_x = "height [m]",
           .profile_y = "pressure of particles [Pa]",
           .methods = {"flat floor", "tilted by 17 degrees", "slope of 30 degrees"},
-          .quick = {8, 12, 16},
-          .full = {12, 16, 24, 32},
+          .quick = {8, 12, 16, 24},
+          .full = {12, 16, 24, 32, 48},
           .run = run_case};
 }
 

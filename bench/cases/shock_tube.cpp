@@ -114,8 +114,8 @@ Case make_case() {
           .profile_x = "x [m]",
           .profile_y = "density [kg/m^3]",
           .methods = {"summed density"},
-          .quick = {400, 800, 1600},
-          .full = {400, 800, 1600, 3200},
+          .quick = {400, 800, 1600, 3200},
+          .full = {400, 800, 1600, 3200, 6400},
           .run = run_case};
 }
 

@@ -113,8 +113,8 @@ Case make_case() {
           .profile_x = "",
           .profile_y = "",
           .methods = {"1.05 of the critical thickness", "1.5 of the critical thickness"},
-          .quick = {16, 24, 32},
-          .full = {20, 30, 40, 50},
+          .quick = {24, 32, 40},
+          .full = {24, 32, 40, 60, 80},
           .run = run_case};
 }
 

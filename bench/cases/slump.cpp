@@ -84,7 +84,7 @@ Case make_case() {
           .profile_x = "",
           .profile_y = "",
           .methods = {"yield stress 0.1 rho g H", "0.2 rho g H", "0.3 rho g H"},
-          .quick = {6, 8, 10},
+          .quick = {8, 10, 12},
           .full = {8, 12, 16, 20},
           .run = run_case};
 }

@@ -104,10 +104,10 @@ Case make_case() {
           .error_label = "velocity: L2 error / L2",
           .resolution_label = "particles across the channel",
           .profile_x = "distance from the middle / half width",
-          .profile_y = "velocity / (yield stress x half width / viscosity scale)",
+          .profile_y = "velocity [-]",
           .methods = {"J = 15", "J = 150", "J = 1500"},
-          .quick = {10, 20, 30},
-          .full = {10, 20, 40, 60},
+          .quick = {10, 20, 40, 60},
+          .full = {20, 40, 60, 80, 120},
           .run = run_case};
 }
 

@@ -106,8 +106,8 @@ Case make_case() {
           .profile_x = "time [s]",
           .profile_y = "height of the front [m]",
           .methods = {"Ste = 0.1", "Ste = 0.5", "Ste = 2"},
-          .quick = {10, 20, 40},
-          .full = {10, 20, 40, 80},
+          .quick = {10, 20, 40, 80},
+          .full = {10, 20, 40, 80, 160},
           .run = run_case};
 }
 

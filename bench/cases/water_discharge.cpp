@@ -95,8 +95,8 @@ Case make_case() {
           .profile_x = "",
           .profile_y = "",
           .methods = {"continuity density"},
-          .quick = {18, 24, 30},
-          .full = {18, 24, 36, 48},
+          .quick = {18, 24, 36},
+          .full = {18, 24, 36, 48, 72},
           .run = run_case};
 }
 

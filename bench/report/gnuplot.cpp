@@ -4,9 +4,11 @@
 #include "io/atomic_file.h"
 #include "io/run_program.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
+#include <limits>
 
 namespace smelt {
 
@@ -49,6 +51,28 @@ bool can_be_drawn(double x, double y, bool logarithmic) {
   return std::isfinite(x) && std::isfinite(y) && (!logarithmic || (x > 0.0 && y > 0.0));
 }
 
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+
+  void add(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+};
+
+/// Range and tics of an axis, a quarter beyond the data on either side, with numbers at 1, 2 and 5 of each decade: gnuplot's own stand at whole decades, of which the data
+/// may span less than one.
+std::string logarithmic_axis(char axis, const Range& range) {
+  const double low = range.low / 1.25, high = range.high * 1.25;
+  const bool many = high > 1e3 * low;
+  std::string tics;
+  for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10.0)
+    for (const double digit : {1.0, 2.0, 5.0})
+      if ((!many || digit == 1.0) && digit * decade >= low && digit * decade <= high)
+        tics += fmt::format("{}'{:.4g}' {:.4g}", tics.empty() ? "" : ", ", digit * decade, digit * decade);
+  return fmt::format("set {0}range [{1:.6g}:{2:.6g}]\nset {0}tics ({3})\n", axis, low, high, tics);
+}
+
 /// Runs a script that draws to standard output, and takes what it drew.
 std::string run_script(std::string script, const std::string& name, const std::filesystem::path& folder) {
   const auto script_path = folder / (name + ".gnuplot"), svg_path = folder / (name + ".svg");
@@ -73,12 +97,18 @@ void check_gnuplot() {
 
 std::string draw_plot(const Plot& plot, const std::string& name, const std::filesystem::path& folder) {
   std::string data, commands;
+  Range x_range, y_range;
+  if (plot.level) y_range.add(*plot.level);
   for (std::size_t k = 0; k < plot.series.size(); ++k) {
     const Series& series = plot.series[k];
     std::string rows;
-    for (std::size_t i = 0; i < series.curve.x.size(); ++i)
-      if (can_be_drawn(series.curve.x[i], series.curve.y[i], plot.logarithmic))
-        fmt::format_to(std::back_inserter(rows), "{:.6g} {:.6g}\n", series.curve.x[i], series.curve.y[i]);
+    for (std::size_t i = 0; i < series.curve.x.size(); ++i) {
+      const double x = series.curve.x[i], y = series.curve.y[i];
+      if (!can_be_drawn(x, y, plot.logarithmic)) continue;
+      x_range.add(x);
+      y_range.add(y);
+      fmt::format_to(std::back_inserter(rows), "{:.6g} {:.6g}\n", x, y);
+    }
     if (rows.empty()) continue;
     data += fmt::format("$d{} << EOD\n{}EOD\n", k, rows);
     commands += fmt::format("{}$d{} {} {}", commands.empty() ? "plot " : ", ", k, style_of(series),
@@ -86,9 +116,8 @@ std::string draw_plot(const Plot& plot, const std::string& name, const std::file
   }
   if (commands.empty()) return "<p>Nothing to draw.</p>";
   if (plot.level) commands += fmt::format(", {:.6g} with lines lw 1 dt 3 lc rgb '#555555' title 'a good number'", *plot.level);
-  std::string script = head(name, 520, 400) + labels(plot.x_label, plot.y_label);
-  script += "set key outside below horizontal samplen 2\nset offsets graph 0.04, graph 0.04, graph 0.04, graph 0.04\n";
-  if (plot.logarithmic) script += "set logscale xy\nset format xy '%.3g'\n";
+  std::string script = head(name, 520, 400) + labels(plot.x_label, plot.y_label) + "set key outside above Left reverse horizontal samplen 2\n";
+  script += plot.logarithmic ? "set logscale xy\n" + logarithmic_axis('x', x_range) + logarithmic_axis('y', y_range) : "set offsets graph 0.03, graph 0.03, graph 0.03, graph 0.03\nset autoscale noextend\n";
   return run_script(script + data + commands + "\n", name, folder);
 }
 

@@ -96,10 +96,10 @@ Plot profile_plot(const CaseResult& result) {
     if (run == nullptr) continue;
     const Profile& profile = *run->measured.profile;
     const bool crowded = profile.computed.x.size() > 40;
-    plot.series.push_back({fmt::format("{}, {:g} {}", problem.methods[m], run->resolution, problem.resolution_label), profile.computed,
+    plot.series.push_back({fmt::format("{} at {:g}", problem.methods[m], run->resolution), profile.computed,
                            crowded ? Series::Look::small_points : Series::Look::points, m});
     const bool same = !references.empty() && references.back().curve.y == profile.reference.y;
-    if (!same) references.push_back({"reference", profile.reference, Series::Look::line, m});
+    if (!same) references.push_back({references.empty() ? "reference" : "", profile.reference, Series::Look::line, m});
   }
   plot.series.insert(plot.series.end(), references.begin(), references.end());
   return plot;

@@ -35,19 +35,6 @@ TEST(GravityCurrent, PlaneFrontIsHupperts) {
                 .order = i > 0 ? std::optional(convergence_order(spacings, errors)) : std::nullopt});
 }
 
-// ------------------------------------------------------------------------------------------------------- lava
-// benchmark 1
-
-/// From rest; fronts at the benchmark's times.
-double dam_break_error(const Choices& choices) {
-  const Reference reference = read_reference("lava_bm1_viscous_dam_break");
-  const double height = 1.0, length = 6.6;
-  const auto depth = [&](double) { return height; };
-  return worst(follow_front(make_current(choices, 1e4 / 2700.0, height * length, length, depth), choices.spacing, 0.0,
-                            reference.column[0]),
-               reference.column[1]);
-}
-
 TEST(GravityCurrent, ViscousDamBreakIsLavaBenchmark1) {
   // At 0.1333 m, 8 rows where it starts and 3 at the end, the front is 7.5 % too far.
   const std::string problem = "lava benchmark 1: viscous dam break; 100 to 550 s";
