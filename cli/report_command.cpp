@@ -24,7 +24,7 @@ void print_report(ReportOptions options) {
   options.expected = bench_folder() / "expected.toml";
   {
     TerminalProgress progress;
-    make_report(choose_cases(all_cases(), options.names), options, progress);
+    make_report(select(all_cases(), options.names), options, progress);
   }
   fmt::print("report    {}\n", (options.folder / "index.html").string());
   if (options.write_expected) fmt::print("expected  {}\n", options.expected.string());

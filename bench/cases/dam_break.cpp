@@ -24,7 +24,8 @@ Measurement run_case(std::size_t method, double n_across) {
   const double seconds = clock.seconds(), origin = fit_origin(run.front, experiment);
   Measurement measured{.error = compare(run.front, experiment, origin).max, .cpu_seconds = seconds, .n_particles = run.particles.size(), .profile = Profile()};
   for (double t = 0.0; t <= last; t += 0.1) measured.profile->computed.add(t, front_at(run.front, t - origin));
-  measured.profile->reference = {experiment.column[0], experiment.column[1]};
+  for (std::size_t k = 0; k < experiment.column[0].size(); ++k)
+    if (experiment.column[0][k] <= last) measured.profile->reference.add(experiment.column[0][k], experiment.column[1][k]);
   measured.picture = draw_speeds(run.particles, "The column at T = 3.4.", a, "/ a");
   return measured;
 }

@@ -35,7 +35,7 @@ constexpr std::array furnace_methods{FurnaceMethod{MaterialKind::wax, 0.4f, fals
                                      FurnaceMethod{MaterialKind::metal, 0.5f, false}};
 
 Measurement run_furnace(std::size_t method, double samples) {
-  RenderScene scene = white_room(64, 64);
+  RenderScene scene = white_room(128, 128);
   scene.look.material = furnace_methods[method].material;
   scene.look.cold.roughness = furnace_methods[method].roughness;
   Measurement measured;
@@ -50,7 +50,7 @@ Measurement run_furnace(std::size_t method, double samples) {
 Measurement run_black_body(std::size_t, double samples) {
   constexpr float temperature = 1300.0f, unit = 100.0f;  // [K], [cd/m^2] that is shown as 1
   constexpr double radius = 0.5, height = 1.5, albedo = 0.5;
-  RenderScene scene = white_room(9, 9);
+  RenderScene scene = white_room(48, 48);
   scene.sky = {Vec3f::Zero(), Vec3f::Zero(), Vec3f::Zero()};
   scene.camera.eye = Vec3(0.0, 0.5, 4.0);
   scene.camera.target = Vec3::Zero();

@@ -34,8 +34,8 @@ Case make_case() {
           .profile_x = "",
           .profile_y = "",
           .methods = {"disc", "ball"},
-          .quick = {4, 6, 8},
-          .full = {6, 8, 12, 16},
+          .quick = {3, 4, 6},
+          .full = {4, 6, 8, 10},
           .run = [](std::size_t method, double n) { return method == 0 ? turn<2>(n) : turn<3>(n); }};
 }
 

@@ -31,6 +31,8 @@ std::string style_of(const Series& series) {
     case Series::Look::points: return fmt::format("with points pt 7 ps 0.8 lc rgb '{}'", colour);
     case Series::Look::small_points: return fmt::format("with points pt 7 ps 0.35 lc rgb '{}'", colour);
     case Series::Look::line_and_points: return fmt::format("with linespoints lw 2 pt 7 ps 0.8 lc rgb '{}'", colour);
+    case Series::Look::squares: return fmt::format("with points pt 5 ps 1.6 lc rgb '{}'", colour);
+    case Series::Look::reference: return "with lines lw 1.5 lc rgb '#222222'";
     case Series::Look::dashes: return fmt::format("with lines lw 1 dt 2 lc rgb '{}'", colour);
   }
   throw InternalError("style_of: unknown look");
@@ -60,16 +62,21 @@ struct Range {
   }
 };
 
-/// Range and tics of an axis, a quarter beyond the data on either side, with numbers at 1, 2 and 5 of each decade: gnuplot's own stand at whole decades, of which the data
-/// may span less than one.
+/// The digits of a decade at which an axis has numbers: the fewer, the more it spans.
+std::vector<double> digits_for(double span) {
+  if (span > 1e3) return {1.0};
+  if (span > 8.0) return {1.0, 2.0, 5.0};
+  return {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0};
+}
+
+/// Range and tics of an axis, a quarter beyond the data on either side: gnuplot's own tics stand at whole decades, of which the data may span less
+/// than one.
 std::string logarithmic_axis(char axis, const Range& range) {
   const double low = range.low / 1.25, high = range.high * 1.25;
-  const bool many = high > 1e3 * low;
   std::string tics;
   for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10.0)
-    for (const double digit : {1.0, 2.0, 5.0})
-      if ((!many || digit == 1.0) && digit * decade >= low && digit * decade <= high)
-        tics += fmt::format("{}'{:.4g}' {:.4g}", tics.empty() ? "" : ", ", digit * decade, digit * decade);
+    for (const double digit : digits_for(high / low))
+      if (digit * decade >= low && digit * decade <= high) tics += fmt::format("{}'{:.4g}' {:.4g}", tics.empty() ? "" : ", ", digit * decade, digit * decade);
   return fmt::format("set {0}range [{1:.6g}:{2:.6g}]\nset {0}tics ({3})\n", axis, low, high, tics);
 }
 

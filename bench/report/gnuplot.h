@@ -12,11 +12,11 @@ namespace smelt {
 
 /// One curve of a plot. Points at which x or y is not a number, or not positive on a logarithmic axis, are left out.
 struct Series {
-  enum class Look { line, points, small_points, line_and_points, dashes };
+  enum class Look { line, points, small_points, line_and_points, dashes, squares, reference };
   std::string label;  ///< in the legend; empty: not there
   Curve curve;
   Look look = Look::line;
-  std::size_t colour = 0;  ///< of the palette; the same number is the same colour in every plot
+  std::size_t colour = 0;  ///< of the palette, the same number the same in every plot; a reference is black
 };
 
 struct Plot {

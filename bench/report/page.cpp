@@ -2,6 +2,7 @@
 
 #include "bench/cases/norms.h"
 #include "bench/report/gnuplot.h"
+#include "bench/report/html.h"
 
 #include <fmt/format.h>
 
@@ -98,28 +99,43 @@ Plot profile_plot(const CaseResult& result) {
     const bool crowded = profile.computed.x.size() > 40;
     plot.series.push_back({fmt::format("{} at {:g}", problem.methods[m], run->resolution), profile.computed,
                            crowded ? Series::Look::small_points : Series::Look::points, m});
-    const bool same = !references.empty() && references.back().curve.y == profile.reference.y;
-    if (!same) references.push_back({references.empty() ? "reference" : "", profile.reference, Series::Look::line, m});
+    if (references.empty() || references.back().curve.y != profile.reference.y)
+      references.push_back({references.empty() ? "reference" : "", profile.reference, Series::Look::reference, 0});
   }
   plot.series.insert(plot.series.end(), references.begin(), references.end());
   return plot;
 }
 
-std::string figure(const std::string& svg, const std::string& caption) {
-  return fmt::format("<figure>{}<figcaption>{}</figcaption></figure>\n", svg, escape_html(caption));
-}
-
 std::string write_figures(const CaseResult& result, const std::filesystem::path& folder) {
   const Case& problem = result.problem;
   std::string out = "<div class=\"plots\">\n";
-  out += figure(draw_plot(cost_plot(result), problem.name + "_cost", folder), "Error against CPU seconds of one thread; a point for each resolution.");
-  out += figure(draw_plot(convergence_plot(result), problem.name + "_convergence", folder), "Error against resolution, with the fitted order.");
+  out += write_figure(draw_plot(cost_plot(result), problem.name + "_cost", folder), "Error against CPU seconds of one thread; a point for each resolution.");
+  out += write_figure(draw_plot(convergence_plot(result), problem.name + "_convergence", folder), "Error against resolution, with the fitted order.");
   const Plot profile = profile_plot(result);
   if (!profile.series.empty())
-    out += figure(draw_plot(profile, problem.name + "_profile", folder), "The finest run of each method (points) beside the reference (lines).");
+    out += write_figure(draw_plot(profile, problem.name + "_profile", folder), "The finest run of each method (points) beside the reference (line).");
   if (const Run* run = finest(result.runs, 0, [](const Measurement& measured) { return measured.picture.has_value(); }))
-    out += figure(draw_picture(*run->measured.picture, problem.name + "_picture", folder), run->measured.picture->caption);
+    out += write_figure(draw_picture(*run->measured.picture, problem.name + "_picture", folder), run->measured.picture->caption);
   return out + "</div>\n";
+}
+
+/// The finest run of each method against the good number.
+std::string write_summary(const CaseResult& result) {
+  const Case& problem = result.problem;
+  std::string out;
+  for (std::size_t m = 0; m < problem.methods.size(); ++m) {
+    out += fmt::format("<tr><td><a href=\"#{}\">{}</a></td><td>{}</td>", problem.name, escape_html(problem.title), escape_html(problem.methods[m]));
+    const Run* run = finest(result.runs, m, [](const Measurement&) { return true; });
+    if (run == nullptr) {
+      out += "<td class=\"failed\" colspan=\"6\">failed</td></tr>\n";
+      continue;
+    }
+    const auto order = fitted_order(result.runs, m);
+    out += fmt::format("<td>{:g}</td><td>{:.3g}</td><td>{:g}</td><td>{}</td><td>{}</td><td>{:.2f}</td></tr>\n", run->resolution, run->measured.error,
+                       problem.good_error, run->measured.error <= problem.good_error ? "yes" : "no", order ? fmt::format("{:.2f}", *order) : "",
+                       run->measured.cpu_seconds);
+  }
+  return out;
 }
 
 std::string write_table(const CaseResult& result) {
@@ -131,7 +147,8 @@ std::string write_table(const CaseResult& result) {
     if (run.failed())
       out += fmt::format("<td class=\"failed\" colspan=\"3\">failed: {}</td></tr>\n", escape_html(run.failure));
     else
-      out += fmt::format("<td>{}</td><td>{:.3g}</td><td>{:.2f}</td></tr>\n", run.measured.n_particles, run.measured.error, run.measured.cpu_seconds);
+      out += fmt::format("<td>{}</td><td>{:.3g}</td><td>{:.2f}</td></tr>\n", run.measured.n_particles > 0 ? fmt::to_string(run.measured.n_particles) : "",
+                         run.measured.error, run.measured.cpu_seconds);
   }
   return out + "</table>\n";
 }
@@ -158,20 +175,6 @@ std::string describe_now() {
   return text;
 }
 
-std::string escape_html(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&': out += "&amp;"; break;
-      case '<': out += "&lt;"; break;
-      case '>': out += "&gt;"; break;
-      case '"': out += "&quot;"; break;
-      default: out += c;
-    }
-  }
-  return out;
-}
-
 std::optional<double> fitted_order(const std::vector<Run>& runs, std::size_t method) {
   const Curve curve = collect(runs, method, [](const Run& run) { return 1.0 / run.resolution; }, error_of);
   if (curve.x.size() < 2) return std::nullopt;
@@ -180,16 +183,17 @@ std::optional<double> fitted_order(const std::vector<Run>& runs, std::size_t met
   return convergence_order(curve.x, curve.y);
 }
 
-std::string write_case_section(const CaseResult& result, bool quick, const std::filesystem::path& folder) {
+Section write_case_section(const CaseResult& result, bool quick, const std::filesystem::path& folder) {
   const Case& problem = result.problem;
   std::string out = fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<p>{} {}</p>\n", problem.name, escape_html(problem.title), escape_html(problem.measures),
                                 escape_html(problem.good));
   if (result.failed()) out += "<p class=\"failed\">Some of its runs failed: see the table.</p>\n";
   out += write_figures(result, folder) + write_table(result);
-  return out + fmt::format("<p>To repeat it: <code>./smelt report {}{}</code></p>\n</section>\n", problem.name, quick ? " --quick" : "");
+  out += fmt::format("<p>To repeat it: <code>./smelt report {}{}</code></p>\n</section>\n", problem.name, quick ? " --quick" : "");
+  return {write_summary(result), out};
 }
 
-std::string write_page(const PageHead& head, const std::vector<std::string>& sections, std::size_t n_expected) {
+std::string write_page(const PageHead& head, const std::vector<Section>& sections, std::size_t n_expected) {
   std::string out = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>smelt: speed against error</title><style>{}</style></head><body>\n"
       "<h1>smelt: speed against error</h1>\n"
@@ -200,8 +204,11 @@ std::string write_page(const PageHead& head, const std::vector<std::string>& sec
       "<p>Every case has a known answer: an exact or converged solution, or an experiment. CPU seconds are those of one thread. The dotted line in a "
       "plot is a good number as the case's text has it; below and to the left is better.</p>\n";
   if (head.quick) out += "<p>These are the coarse resolutions of the quick suite; without <code>--quick</code> finer ones run.</p>\n";
-  if (sections.size() < n_expected) out += fmt::format("<p class=\"failed\">{} of {} cases so far.</p>\n", sections.size(), n_expected);
-  for (const std::string& section : sections) out += section;
+  if (sections.size() < n_expected) out += fmt::format("<p class=\"failed\">{} of {} sections so far.</p>\n", sections.size(), n_expected);
+  out += "<table><tr><th>case</th><th>method</th><th>finest</th><th>error</th><th>a good number</th><th>met</th><th>order</th><th>CPU seconds</th></tr>\n";
+  for (const Section& section : sections) out += section.summary;
+  out += "</table>\n";
+  for (const Section& section : sections) out += section.body;
   return out + "</body></html>\n";
 }
 

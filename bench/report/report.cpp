@@ -4,6 +4,7 @@
 #include "bench/report/expected.h"
 #include "bench/report/gnuplot.h"
 #include "bench/report/page.h"
+#include "bench/report/stability.h"
 #include "bench/report/suite.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
@@ -13,45 +14,60 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <utility>
 
 namespace smelt {
 
 namespace {
 
-/// What is on the disk: every case that is done, in the order of the suite.
+constexpr const char* stability_name = "stability";
+
+/// What is on the disk: every section that is done, in the order of the selection.
 class ReportFolder {
  public:
-  ReportFolder(const std::vector<Case>& cases, const ReportOptions& options)
-      : cases_(cases), options_(options), head_{describe_machine(), std::string(version), describe_now(), options.command, options.quick} {
+  ReportFolder(const Selection& selection, const ReportOptions& options)
+      : options_(options), head_{describe_machine(), std::string(version), describe_now(), options.command, options.quick} {
+    for (const Case& problem : selection.cases) order_.push_back(problem.name);
+    if (selection.stability) order_.emplace_back(stability_name);
     create_directories_or_fail(options.folder);
   }
 
   void add(const CaseResult& result) {
     const std::string& name = result.problem.name;
-    sections_[name] = write_case_section(result, options_.quick, options_.folder);
     rows_[name] = to_rows(result);
     const std::string profiles = write_profiles_csv(result);
     if (!profiles.empty()) write_file_atomically(options_.folder / fmt::format("profile_{}.csv", name), profiles);
     write_file_atomically(options_.folder / "runs.csv", write_runs_csv(rows()));
-    std::vector<std::string> sections;
-    for (const Case& problem : cases_)
-      if (sections_.contains(problem.name)) sections.push_back(sections_.at(problem.name));
-    write_file_atomically(options_.folder / "index.html", write_page(head_, sections, cases_.size()));
+    add_section(name, write_case_section(result, options_.quick, options_.folder));
+  }
+
+  void add(const Stability& stability) {
+    write_file_atomically(options_.folder / "stability.csv", write_stability_csv(stability));
+    add_section(stability_name, write_stability_section(stability, options_.quick, options_.folder));
   }
 
   std::vector<RunRow> rows() const {
     std::vector<RunRow> all;
-    for (const Case& problem : cases_)
-      if (const auto found = rows_.find(problem.name); found != rows_.end()) all.insert(all.end(), found->second.begin(), found->second.end());
+    for (const std::string& name : order_)
+      if (const auto found = rows_.find(name); found != rows_.end()) all.insert(all.end(), found->second.begin(), found->second.end());
     return all;
   }
 
  private:
-  const std::vector<Case>& cases_;
+  void add_section(const std::string& name, Section section) {
+    sections_[name] = std::move(section);
+    std::vector<Section> sections;
+    for (const std::string& done : order_)
+      if (sections_.contains(done)) sections.push_back(sections_.at(done));
+    write_file_atomically(options_.folder / "index.html", write_page(head_, sections, order_.size()));
+  }
+
   const ReportOptions& options_;
   PageHead head_;
-  std::map<std::string, std::string> sections_;
+  std::vector<std::string> order_;
+  std::map<std::string, Section> sections_;
   std::map<std::string, std::vector<RunRow>> rows_;
 };
 
@@ -69,26 +85,28 @@ std::vector<std::string> failures(const std::vector<RunRow>& rows) {
 
 }  // namespace
 
-std::vector<Case> choose_cases(const std::vector<Case>& all, const std::vector<std::string>& names) {
+Selection select(const std::vector<Case>& all, const std::vector<std::string>& names) {
   std::vector<std::string> known;
   for (const Case& problem : all) known.push_back(problem.name);
+  known.emplace_back(stability_name);
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     const auto nearest = nearest_word(name, known);
     fail("there is no case \"{}\"{}; cases are {}", name, nearest ? fmt::format(" (did you mean \"{}\"?)", *nearest) : "", fmt::join(known, ", "));
   }
-  std::vector<Case> chosen;
-  for (const Case& problem : all)
-    if (names.empty() || std::find(names.begin(), names.end(), problem.name) != names.end()) chosen.push_back(problem);
-  return chosen;
+  const auto wanted = [&](const std::string& name) { return names.empty() || std::find(names.begin(), names.end(), name) != names.end(); };
+  Selection selection{{}, wanted(stability_name)};
+  std::copy_if(all.begin(), all.end(), std::back_inserter(selection.cases), [&](const Case& problem) { return wanted(problem.name); });
+  return selection;
 }
 
-void make_report(const std::vector<Case>& cases, const ReportOptions& options, Progress& progress) {
+void make_report(const Selection& selection, const ReportOptions& options, Progress& progress) {
   check_gnuplot();
   ExpectedErrors expected;
   if (options.check || (options.write_expected && std::filesystem::exists(options.expected))) expected = read_expected(options.expected);
-  ReportFolder folder(cases, options);
-  run_suite(cases, options.quick, options.threads, progress, [&](const CaseResult& result) { folder.add(result); });
+  ReportFolder folder(selection, options);
+  run_suite(selection.cases, options.quick, options.threads, progress, [&](const CaseResult& result) { folder.add(result); });
+  if (selection.stability) folder.add(probe_stability(options.quick, options.threads, progress));
 
   const std::vector<RunRow> rows = folder.rows();
   if (options.write_expected) return write_expected(options.expected, std::move(expected), rows);

@@ -46,16 +46,17 @@ TEST(Page, HasNoOrderOfOneRun) {
 
 TEST(Page, StatesWhatItIsAndHowFarItIs) {
   const PageHead head{"a machine, 2 cores", "0.1.0", "2026-01-31 12:34 UTC", "./smelt report --quick", true};
-  const std::string page = write_page(head, {"<section>one</section>"}, 2);
-  for (const char* text : {"a machine, 2 cores", "0.1.0", "2026-01-31 12:34 UTC", "./smelt report --quick", "<section>one</section>", "1 of 2 cases so far"})
+  const std::string page = write_page(head, {{"<tr><td>one's row</td></tr>", "<section>one</section>"}}, 2);
+  for (const char* text : {"a machine, 2 cores", "0.1.0", "2026-01-31 12:34 UTC", "./smelt report --quick", "one's row", "<section>one</section>", "1 of 2 sections so far"})
     EXPECT_NE(page.find(text), std::string::npos) << text;
-  EXPECT_EQ(write_page(head, {"one", "two"}, 2).find("so far"), std::string::npos);
+  EXPECT_EQ(write_page(head, {{"", "one"}, {"", "two"}}, 2).find("so far"), std::string::npos);
 }
 
 TEST(Page, ShowsPlotsFiguresAndFailures) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const std::filesystem::path folder = testing::TempDir();
-  const std::string section = write_case_section(run_cases({made_up_case("one")})[0], true, folder);
+  const auto [summary, section] = write_case_section(run_cases({made_up_case("one")})[0], true, folder);
+  EXPECT_EQ(count(summary, "<td>0.00125</td><td>0.01</td><td>yes</td><td>2.00</td>"), 2u) << summary;  // of both methods, at 40
   EXPECT_EQ(count(section, "<svg"), 3u);  // cost, convergence, profile
   EXPECT_EQ(count(section, "</svg>"), 3u);
   EXPECT_EQ(section.find("<?xml"), std::string::npos);

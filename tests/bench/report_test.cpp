@@ -32,18 +32,22 @@ TEST(Report, EveryCaseSaysWhatItIs) {
 
 TEST(Report, ChoosesCasesByName) {
   const std::vector<Case> all{made_up_case("channel"), made_up_case("slump"), made_up_case("cavity")};
-  EXPECT_EQ(choose_cases(all, {}).size(), 3u);
-  const auto chosen = choose_cases(all, {"cavity", "channel"});
-  ASSERT_EQ(chosen.size(), 2u);
-  EXPECT_EQ(chosen[0].name, "channel");
+  EXPECT_EQ(select(all, {}).cases.size(), 3u);
+  EXPECT_TRUE(select(all, {}).stability);
+  const Selection chosen = select(all, {"cavity", "channel"});
+  ASSERT_EQ(chosen.cases.size(), 2u);
+  EXPECT_EQ(chosen.cases[0].name, "channel");
+  EXPECT_FALSE(chosen.stability);
+  EXPECT_TRUE(select(all, {"stability"}).stability);
+  EXPECT_TRUE(select(all, {"stability"}).cases.empty());
 }
 
 TEST(Report, NamesTheCasesWhereThereIsNoSuchOne) {
   try {
-    choose_cases({made_up_case("channel"), made_up_case("slump")}, {"chanel"});
+    select({made_up_case("channel"), made_up_case("slump")}, {"chanel"});
     FAIL() << "nothing was thrown";
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "there is no case \"chanel\" (did you mean \"channel\"?); cases are channel, slump");
+    EXPECT_STREQ(error.what(), "there is no case \"chanel\" (did you mean \"channel\"?); cases are channel, slump, stability");
   }
 }
 
@@ -56,7 +60,7 @@ TEST(Report, LosesNothingToAFailure) {
   options.folder = folder;
   Progress silent;
   try {
-    make_report({made_up_case("first"), made_up_case("second")}, options, silent);
+    make_report({{made_up_case("first"), made_up_case("second")}, false}, options, silent);
     FAIL() << "nothing was thrown";
   } catch (const Error& error) {
     const std::string message = error.what();
