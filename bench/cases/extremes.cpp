@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -109,6 +110,15 @@ HardScene block_with_jump(double jump, bool relaxed, double courant) {
   auto parameters = all_terms(courant);
   if (!relaxed) parameters.shear_wave_speed = 0.0;
   return {{parameters, {soft_material(jump)}, {}, moving_block(6)}, 0.3};
+}
+
+HardScene creeping_block(double jump, bool relaxed, double courant) {
+  auto parameters = all_terms(courant);
+  parameters.gravity = Vec3::Zero();
+  if (!relaxed) parameters.shear_wave_speed = 0.0;
+  Particles<3> p = moving_block(6);
+  for (Vec3& v : p.velocity) v *= 1e-4;
+  return {{parameters, {soft_material(jump)}, {}, std::move(p)}, std::numeric_limits<double>::infinity()};
 }
 
 const std::vector<double>& jumps() {

@@ -26,6 +26,9 @@ struct HardCase {
 /// at once.
 HardScene block_with_jump(double jump, bool relaxed, double courant);
 
+/// The same block without gravity, and so slow (shear rates of 1e-3 1/s) that most of its viscosity is that of rest: for ever.
+HardScene creeping_block(double jump, bool relaxed, double courant);
+
 /// The jump numbers of the blocks among the hard cases.
 const std::vector<double>& jumps();
 

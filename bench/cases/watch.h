@@ -47,6 +47,7 @@ struct Watched {
   double energy_gain = 0.0;    ///< largest rise of E above its lowest so far, over the kinetic energy at the start
   double density_error = 0.0;  ///< largest |rho/rho0 - 1| of any particle, at any time
   int steps = 0;
+  double time = 0.0;  ///< [s] that passed
 };
 
 /// Advances a scene from rest density for `duration` [s], or `most_steps`. The solver itself throws where something is not finite.
@@ -56,8 +57,8 @@ Watched watch(Solver<Dim, Real>& solver, double duration, int most_steps = std::
   solver.prepare();
   double lowest = total_energy(solver);
   const double scale = kinetic_energy(solver);
-  for (double remaining = duration; remaining > 0.0 && seen.steps < most_steps; ++seen.steps) {
-    remaining -= solver.step(remaining, duration - remaining).dt;
+  for (; seen.time < duration && seen.steps < most_steps; ++seen.steps) {
+    seen.time += solver.step(duration - seen.time, seen.time).dt;
     const double energy = total_energy(solver), gain = (energy - lowest) / scale;
     lowest = std::min(lowest, energy);
     if (!std::isnan(seen.energy_gain) && !(gain <= seen.energy_gain)) seen.energy_gain = gain;  // a NaN stays one

@@ -69,10 +69,10 @@ std::vector<double> digits_for(double span) {
   return {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0};
 }
 
-/// Range and tics of an axis, a quarter beyond the data on either side: gnuplot's own tics stand at whole decades, of which the data may span less
+/// Range and tics of an axis, a third beyond the data on either side: gnuplot's own tics stand at whole decades, of which the data may span less
 /// than one.
 std::string logarithmic_axis(char axis, const Range& range) {
-  const double low = range.low / 1.25, high = range.high * 1.25;
+  const double low = range.low / 1.33, high = range.high * 1.33;
   std::string tics;
   for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10.0)
     for (const double digit : digits_for(high / low))

@@ -13,13 +13,13 @@ namespace smelt {
 
 /// How a scene fared at one CFL factor.
 struct Trial {
-  double courant = 0.0;    ///< C of the time step
-  Watched seen = {};       ///< the worst on the way
-  double mean_step = 0.0;  ///< [s]
+  double courant = 0.0;   ///< C of the time step
+  Watched seen = {};      ///< the worst on the way
   std::string failure = {};  ///< why the solver gave up; empty where it did not
 
   /// Whether it ended, and no more energy than extremes::energy_bar came from nowhere.
   bool held() const;
+  double mean_step() const { return seen.time / seen.steps; }  ///< [s]
 };
 
 struct HardCaseResult {
@@ -29,7 +29,7 @@ struct HardCaseResult {
   const Trial* at(double courant) const;  ///< nullptr where it was not tried
 };
 
-/// A block of jump number `jump` for some hundred steps.
+/// A creeping block of jump number `jump` for some hundred steps.
 struct MapCell {
   double jump = 0.0;
   bool relaxed = false;  ///< the stress has a memory; else it follows the strain rate at once, the explicit method
