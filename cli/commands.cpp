@@ -2,6 +2,7 @@
 
 #include "bench/thesis_bench.h"
 #include "cli/bench_commands.h"
+#include "cli/report_command.h"
 #include "cli/terminal_progress.h"
 #include "core/error.h"
 #include "scenes/check_scene.h"
@@ -208,6 +209,7 @@ int run_parsed(int argc, char** argv) {
   SceneOptions o;
   std::string file;
   BenchOptions bench;
+  ReportOptions report;
   std::function<void()> work;
 
   const auto add = [&](const char* name, const char* what, auto&& body) {
@@ -242,6 +244,7 @@ int run_parsed(int argc, char** argv) {
       ->add_option("file", file, "the file")
       ->required();
   add_bench(app, bench, work);
+  add_report(app, report, work);
   add("scene-reference", "print all keys of a scene file", [] { fmt::print("{}", write_scene_reference()); });
 
   try {
