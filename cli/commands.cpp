@@ -179,7 +179,8 @@ void add_bench(CLI::App& app, BenchOptions& o, std::function<void()>& work) {
     return command;
   };
   for (CLI::App* command : {add("step", "particle-steps a second of a full melting step", [&o] { print_step_bench(o.n_particles, o.json); }),
-                            add("terms", "what each term of a scene costs", [&o] { print_terms_bench(o.n_particles, o.json); })})
+                            add("terms", "what each term of a scene costs", [&o] { print_terms_bench(o.n_particles, o.json); }),
+                            add("pairs", "the pair loops on one core, beside what it can do at best", [&o] { print_pairs_bench(o.n_particles, o.json); })})
     command->add_option("--particles", o.n_particles, "about how many; 100000 unless said")->check(CLI::Range(std::size_t{100}, std::size_t{100000000}));
   std::vector<std::string> shots;
   for (const ThesisShot& shot : thesis_shots()) shots.push_back(shot.name);
