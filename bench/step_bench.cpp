@@ -9,6 +9,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <numeric>
 
 namespace smelt {
 
@@ -66,6 +67,23 @@ double mean_neighbours(const Solver<3, float>& solver) {
   return n / static_cast<double>(x.size());
 }
 
+/// Shares of the stages in the time of the steps that `advance` makes.
+template <typename Advance>
+std::array<double, step_stage_names.size()> observe_stages(Solver<3, float>& solver, const Advance& advance) {
+  std::array<double, step_stage_names.size()> shares{};
+  auto last = std::chrono::steady_clock::now();
+  solver.observe([&](StepStage stage) {
+    const auto now = std::chrono::steady_clock::now();
+    shares[static_cast<std::size_t>(stage)] += std::chrono::duration<double>(now - last).count();
+    last = now;
+  });
+  advance();
+  solver.observe(nullptr);
+  const double whole = std::accumulate(shares.begin(), shares.end(), 0.0);
+  for (double& share : shares) share /= whole;
+  return shares;
+}
+
 }  // namespace
 
 StepBenchResult bench_step(std::size_t n_particles, const StepBenchTerms& terms) {
@@ -84,21 +102,24 @@ StepBenchResult bench_step(std::size_t n_particles, const StepBenchTerms& terms)
   StepBenchResult result;
   result.n_particles = solver.particles().size();
   solver.prepare();
-  const int n_steps = std::clamp(static_cast<int>(4e6 / static_cast<double>(result.n_particles)), 4, 400);
   double t = 0.0;
-  const auto advance = [&](int n) {
-    for (int k = 0; k < n; ++k) t += solver.step(1.0, t).dt;
+  const auto advance_past_searches = [&](std::size_t n) {
+    int n_steps = 0;
+    for (const std::size_t start = solver.n_searches(); solver.n_searches() < start + n; ++n_steps) t += solver.step(1.0, t).dt;
+    return n_steps;
   };
-  advance(n_steps);
+  advance_past_searches(2);
+  const std::size_t n_searches = std::clamp<std::size_t>(400'000 / result.n_particles, 1, 20);
   result.seconds_per_step = 1e30;
   for (int run = 0; run < 3; ++run) {
-    const std::size_t searches = solver.n_searches();
     const auto start = std::chrono::steady_clock::now();
-    advance(n_steps);
+    const int n_steps = advance_past_searches(n_searches);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    result.seconds_per_step = std::min(result.seconds_per_step, seconds / n_steps);
-    result.steps_per_search = static_cast<double>(n_steps) / static_cast<double>(std::max<std::size_t>(1, solver.n_searches() - searches));
+    if (seconds / n_steps >= result.seconds_per_step) continue;
+    result.seconds_per_step = seconds / n_steps;
+    result.steps_per_search = static_cast<double>(n_steps) / static_cast<double>(n_searches);
   }
+  result.stage_shares = observe_stages(solver, [&] { advance_past_searches(n_searches); });
   result.bytes_per_particle = (resident_bytes() - before) / static_cast<double>(result.n_particles);
   result.neighbours = mean_neighbours(solver);
   return result;

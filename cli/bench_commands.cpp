@@ -13,12 +13,15 @@ namespace smelt {
 namespace {
 
 nlohmann::ordered_json to_json(const StepBenchResult& r) {
+  nlohmann::ordered_json stages;
+  for (std::size_t k = 0; k < step_stage_names.size(); ++k) stages[step_stage_names[k]] = r.stage_shares[k];
   return {{"particles", r.n_particles},
           {"neighbours", r.neighbours},
           {"seconds_per_step", r.seconds_per_step},
           {"particle_steps_per_second", r.particle_steps_per_second()},
           {"steps_per_search", r.steps_per_search},
-          {"bytes_per_particle", r.bytes_per_particle}};
+          {"bytes_per_particle", r.bytes_per_particle},
+          {"stage_shares", stages}};
 }
 
 void print_json(nlohmann::ordered_json json) {
@@ -34,6 +37,10 @@ void print_step_bench(std::size_t n_particles, bool as_json) {
   fmt::print("{:.2f} million particle-steps/s\n", r.particle_steps_per_second() / 1e6);
   fmt::print("{} particles, {:.1f} neighbours, {:.4g} ms a step, {:.1f} steps between searches, {:.0f} bytes a particle\n", r.n_particles,
              r.neighbours, 1e3 * r.seconds_per_step, r.steps_per_search, r.bytes_per_particle);
+  std::string stages;
+  for (std::size_t k = 0; k < step_stage_names.size(); ++k)
+    stages += fmt::format("{}{} {:.1f} %", k == 0 ? "" : ", ", step_stage_names[k], 100.0 * r.stage_shares[k]);
+  fmt::print("{}\n", stages);
 }
 
 void print_terms_bench(std::size_t n_particles, bool as_json) {
