@@ -118,6 +118,8 @@ double relaxed_shear_rate(const FlowCurve& curve, double modulus_dt, double tria
     if (std::abs(residual) <= tolerance) return y;
     (residual > 0.0 ? upper : lower) = y;
     const double newton = y - residual / (slope + modulus_dt);
+    // The error goes down by its square, times what the curve bends by over y: 40 at most where it matters.
+    if (std::abs(newton - y) <= 1e-6 * y && newton > 0.0) return newton;
     // The knee at the yield stress throws Newton far off now and then: bisect, in the logarithm once there is a scale.
     const double middle = lower > 0.0 ? std::sqrt(lower * upper) : 0.1 * upper;
     y = newton > lower && newton < upper && (iteration < 12 || iteration % 2 == 0) ? newton : middle;
