@@ -22,7 +22,7 @@ struct StepBenchResult {
   double neighbours = 0.0;             ///< in the support, mean
   double seconds_per_step = 0.0;       ///< least of three runs
   double steps_per_search = 0.0;       ///< steps from one search for neighbours to the next, mean
-  double bytes_per_particle = 0.0;     ///< growth of the resident set by particles and solver
+  double bytes_per_particle = 0.0;     ///< at the peak of a process that does nothing else
   std::array<double, step_stage_names.size()> stage_shares{};  ///< of the time of a step, by StepStage
   double particle_steps_per_second() const { return static_cast<double>(n_particles) / seconds_per_step; }
 };
