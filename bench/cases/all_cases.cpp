@@ -32,6 +32,7 @@ std::vector<Case> all_cases() {
           slope::make_case(),
           rigid_rotation::make_case(),
           gravity_current::make_plane_case(),
+          gravity_current::make_axisymmetric_case(),
           gravity_current::make_benchmark_case(),
           surfacing_cases::make_sphere_case(),
           surfacing_cases::make_bunny_case(),

@@ -28,8 +28,8 @@ struct Profile {
 /// Points coloured by a value: a flow, say.
 struct Picture {
   std::string caption;
-  std::string x_label, y_label, value_label;        ///< with units
-  std::vector<double> x = {}, y = {}, value = {};   ///< of one length
+  std::string x_label, y_label, value_label;       ///< with units
+  std::vector<double> x = {}, y = {}, value = {};  ///< of one length
 };
 
 /// One run at one resolution.
@@ -42,16 +42,16 @@ struct Measurement {
 };
 
 struct Case {
-  std::string name;      ///< on the command line
+  std::string name;  ///< on the command line
   std::string title;
-  std::string measures;  ///< one sentence
-  std::string good;      ///< one sentence: what a good number is
-  double good_error;     ///< the same as a number
-  std::string error_label;       ///< of the axis, with its unit
-  std::string resolution_label;  ///< what is counted: "particles across the channel"
-  std::string profile_x, profile_y;  ///< axes of the profiles, with units; empty without profiles
-  std::vector<std::string> methods;  ///< each is a line of the plots
-  std::vector<double> quick, full;   ///< resolutions, ascending
+  std::string measures;                        ///< one sentence
+  std::string good;                            ///< one sentence: what a good number is
+  double good_error;                           ///< the same as a number
+  std::string error_label;                     ///< of the axis, with its unit
+  std::string resolution_label;                ///< what is counted: "particles across the channel"
+  std::string profile_x = {}, profile_y = {};  ///< axes of the profiles, with units; empty without profiles
+  std::vector<std::string> methods;            ///< each is a line of the plots
+  std::vector<double> quick, full;             ///< resolutions, ascending
   /// Computes with methods[method] at a resolution, on the calling thread where it is in a tbb::task_arena of one. Throws where it cannot.
   std::function<Measurement(std::size_t method, double resolution)> run;
 };

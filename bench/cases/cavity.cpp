@@ -79,8 +79,8 @@ Errors measure(const Solver<2, double>& solver, const Reference& reference, int 
 Case make_case() {
   return {.name = "cavity",
           .title = "Lid-driven cavity",
-          .measures = "The steady flow in a square box whose lid slides, Re = 1: the largest difference of the velocities on the two middle lines from finite "
-                      "differences.",
+          .measures = "The steady flow in a square box whose lid slides, Re = 1: the largest difference of the velocities on the two middle "
+                      "lines from finite differences.",
           .good = "Within 2 % of the lid's speed.",
           .good_error = 0.02,
           .error_label = "velocity: largest error / lid speed",

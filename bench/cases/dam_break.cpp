@@ -22,7 +22,10 @@ Measurement run_case(std::size_t method, double n_across) {
   const CpuClock clock;
   const Collapse run = collapse(static_cast<int>(n_across));
   const double seconds = clock.seconds(), origin = fit_origin(run.front, experiment);
-  Measurement measured{.error = compare(run.front, experiment, origin).max, .cpu_seconds = seconds, .n_particles = run.particles.size(), .profile = Profile()};
+  Measurement measured{.error = compare(run.front, experiment, origin).max,
+                       .cpu_seconds = seconds,
+                       .n_particles = run.particles.size(),
+                       .profile = Profile()};
   for (double t = 0.0; t <= last; t += 0.1) measured.profile->computed.add(t, front_at(run.front, t - origin));
   for (std::size_t k = 0; k < experiment.column[0].size(); ++k)
     if (experiment.column[0][k] <= last) measured.profile->reference.add(experiment.column[0][k], experiment.column[1][k]);
@@ -81,8 +84,8 @@ double fit_origin(const Reference& run, const Reference& experiment) {
 Case make_case() {
   return {.name = "dam_break",
           .title = "Dam break",
-          .measures = "The front of a water column a x 2a that collapses along a dry floor until T = t sqrt(2g/a) = 3.4, its largest difference from "
-                      "measured fronts, with the origin of time of each experiment fitted.",
+          .measures = "The front of a water column a x 2a that collapses along a dry floor until T = t sqrt(2g/a) = 3.4, its largest difference "
+                      "from measured fronts, with the origin of time of each experiment fitted.",
           .good = "Within 10 %: the experiments differ from each other by more.",
           .good_error = 0.1,
           .error_label = "front: largest |position / experiment - 1|",

@@ -26,6 +26,14 @@ Film trace(const SurfaceMesh& fluid, const RenderScene& scene, double samples, b
   return film;
 }
 
+/// Root mean square of what the red of pixels differs from `expected`, over that; over those alone that show nothing but fluid where `fluid_alone`.
+double noise(const Film& film, double expected, bool fluid_alone) {
+  std::vector<double> differences;
+  for (std::size_t i = 0; i < film.size(); ++i)
+    if (!fluid_alone || film.kind[i] == 1.0f) differences.push_back(radiance_at(film, i).x() / expected - 1.0);
+  return compute_norms(differences).l2;
+}
+
 struct FurnaceMethod {
   MaterialKind material;
   float roughness;
@@ -40,10 +48,7 @@ Measurement run_furnace(std::size_t method, double samples) {
   scene.look.cold.roughness = furnace_methods[method].roughness;
   Measurement measured;
   const Film film = trace(make_sphere(1.0, Vec3::Zero(), 128), scene, samples, furnace_methods[method].denoise, measured.cpu_seconds);
-  std::vector<double> differences;
-  for (std::size_t i = 0; i < film.size(); ++i)
-    if (film.kind[i] == 1.0f) differences.push_back(radiance_at(film, i).x() - 1.0);  // nothing but sphere
-  measured.error = compute_norms(differences).l2;
+  measured.error = noise(film, 1.0, true);
   return measured;
 }
 
@@ -64,9 +69,7 @@ Measurement run_black_body(std::size_t, double samples) {
   Measurement measured;
   const Film film = trace(ball, scene, samples, false, measured.cpu_seconds);
   const double expected = albedo * (BlackBodyTable()(temperature) / unit).x() * (radius / height) * (radius / height);
-  std::vector<double> differences;
-  for (std::size_t i = 0; i < film.size(); ++i) differences.push_back(radiance_at(film, i).x() / expected - 1.0);
-  measured.error = compute_norms(differences).l2;
+  measured.error = noise(film, expected, false);
   return measured;
 }
 
@@ -75,14 +78,12 @@ Measurement run_black_body(std::size_t, double samples) {
 Case make_furnace_case() {
   return {.name = "furnace",
           .title = "Furnace: noise against samples",
-          .measures = "What pixels of a white sphere differ from the white room that it stands in, root mean square: wax with a coat, the same after the filter, "
-                      "and metal.",
+          .measures = "What pixels of a white sphere differ from the white room that it stands in, root mean square: wax with a coat, the same "
+                      "after the filter, and metal.",
           .good = "Within 2 %, which an eye does not see.",
           .good_error = 0.02,
           .error_label = "radiance: L2 error / exact",
           .resolution_label = "samples a pixel",
-          .profile_x = "",
-          .profile_y = "",
           .methods = {"wax", "wax, denoised", "metal"},
           .quick = {1, 4, 16, 64},
           .full = {1, 4, 16, 64, 256, 1024},
@@ -92,14 +93,12 @@ Case make_furnace_case() {
 Case make_black_body_case() {
   return {.name = "black_body",
           .title = "Black body: noise of its light against samples",
-          .measures = "The light of a sphere at 1300 K on the floor below it, drawn as light sources and met by rays, against Planck's law and the solid angle: "
-                      "root mean square over pixels.",
+          .measures = "The light of a sphere at 1300 K on the floor below it, drawn as light sources and met by rays, against Planck's law and "
+                      "the solid angle: root mean square over pixels.",
           .good = "Within 2 %, which an eye does not see.",
           .good_error = 0.02,
           .error_label = "radiance: L2 error / exact",
           .resolution_label = "samples a pixel",
-          .profile_x = "",
-          .profile_y = "",
           .methods = {"red channel"},
           .quick = {16, 64, 256, 1024},
           .full = {16, 64, 256, 1024, 4096},

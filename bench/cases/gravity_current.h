@@ -1,6 +1,6 @@
 #pragma once
-// Viscous gravity currents along a flat floor, 2D: the plane current of [Huppert 1982] and the viscous dam break of the
-// lava benchmarks, both against lubrication theory.
+// Viscous gravity currents along a flat floor: the plane and the axisymmetric one of [Huppert 1982] and, 2D, the viscous dam break of the lava
+// benchmarks, all against lubrication theory.
 //
 // Where inertia is negligible nothing but g/nu counts. Both are divided by 100 here: the same flow, in steps that are ten times as long. What is
 // left of inertia moves the front of the dam break by up to 1.6 %. The front is the foremost particle's outer edge.
@@ -26,10 +26,14 @@ Obstacle<2> make_plane(const Vec<2>& a, const Vec<2>& b, double friction);
 /// decade in which its depth over its length falls from 1/11 to 1/27.
 Measurement run_plane_current(const Choices& choices);
 
+/// The same in all directions from 10 s, when it is 0.17 times as deep as its radius, to 65 s.
+Measurement run_axisymmetric_current(const Choices& choices);
+
 /// Lava benchmark 1, from rest; fronts at the benchmark's times.
 Measurement run_viscous_dam_break(const Choices& choices);
 
 Case make_plane_case();
+Case make_axisymmetric_case();
 Case make_benchmark_case();
 
 }  // namespace smelt::gravity_current

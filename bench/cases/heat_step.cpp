@@ -78,8 +78,8 @@ double l2_error(const Solver<2, double>& solver, double time) {
 Case make_case() {
   return {.name = "heat_step",
           .title = "Heat: a step that spreads",
-          .measures = "The temperature 0.2 s after a step of one kelvin on a jittered lattice, diffusivity 0.1 m^2/s, against the error function: root mean "
-                      "square over four lattices.",
+          .measures = "The temperature 0.2 s after a step of one kelvin on a jittered lattice, diffusivity 0.1 m^2/s, against the error "
+                      "function: root mean square over four lattices.",
           .good = "Within 0.1 % of the step; where the number of neighbours grows too it converges faster.",
           .good_error = 0.001,
           .error_label = "temperature: L2 error / step",

@@ -90,8 +90,8 @@ std::array<double, times.size()> run_channel(int across, const Setting& setting)
 Case make_case() {
   return {.name = "poiseuille",
           .title = "Start-up of plane Poiseuille flow",
-          .measures = "The velocity between two planes as a Newtonian fluid is set in motion by a body force [Morris 1997], at five times from start to "
-                      "steady flow, the worst of them, against the series.",
+          .measures = "The velocity between two planes as a Newtonian fluid is set in motion by a body force [Morris 1997], at five times from "
+                      "start to steady flow, the worst of them, against the series.",
           .good = "Within 1 % on a regular lattice; a jittered one costs up to 2.5 %.",
           .good_error = 0.01,
           .error_label = "velocity: L2 error / L2",

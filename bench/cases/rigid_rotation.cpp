@@ -26,13 +26,12 @@ Measurement turn(double n) {
 Case make_case() {
   return {.name = "rigid_rotation",
           .title = "A free body that spins",
-          .measures = "What a stiff disc and a stiff ball (jump number 1000) lose of their angular velocity in one turn; they should keep all of it.",
+          .measures = "What a stiff disc and a stiff ball (jump number 1000) lose of their angular velocity in one turn; they should keep all of"
+                      " it.",
           .good = "Within 1 %.",
           .good_error = 0.01,
           .error_label = "|angular velocity / start - 1|",
           .resolution_label = "particles in the radius",
-          .profile_x = "",
-          .profile_y = "",
           .methods = {"disc", "ball"},
           .quick = {3, 4, 6},
           .full = {4, 6, 8, 10},

@@ -105,8 +105,8 @@ double plateau_error(const std::vector<Point>& profile, double Point::*field, do
 Case make_case() {
   return {.name = "shock_tube",
           .title = "Shock tube",
-          .measures = "The density of an ideal gas 0.15 s after a membrane bursts, between the fan and the shock, against the exact Riemann solution: mean "
-                      "difference over the mean.",
+          .measures = "The density of an ideal gas 0.15 s after a membrane bursts, between the fan and the shock, against the exact Riemann "
+                      "solution: mean difference over the mean.",
           .good = "Within 2 %; the order is one at best, as a shock is smeared over so many particles.",
           .good_error = 0.02,
           .error_label = "density: L1 error / mean",

@@ -104,14 +104,13 @@ double run_layer(int n_rows, double ratio, double end, double h_over_spacing) {
 Case make_case() {
   return {.name = "slope",
           .title = "Viscoplastic layer on a slope",
-          .measures = "The speed of the surface of a nearly Bingham layer just and well above the thickness at which it starts to flow, against the flow curve's "
-                      "integral.",
-          .good = "Within 10 % just above the critical thickness, where a change of 1 % in thickness changes the speed by 40 %, and 2 % well above.",
+          .measures = "The speed of the surface of a nearly Bingham layer just and well above the thickness at which it starts to flow, against "
+                      "the flow curve's integral.",
+          .good = "Within 10 % just above the critical thickness, where a change of 1 % in thickness changes the speed by 40 %, and 2 % well "
+                  "above.",
           .good_error = 0.1,
           .error_label = "|speed of the surface / exact - 1|",
           .resolution_label = "rows of particles",
-          .profile_x = "",
-          .profile_y = "",
           .methods = {"1.05 of the critical thickness", "1.5 of the critical thickness"},
           .quick = {24, 32, 40},
           .full = {24, 32, 40, 60, 80},

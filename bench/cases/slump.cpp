@@ -27,9 +27,12 @@ Colliders<3> make_floor() {
 
 constexpr std::array relative_yields{0.1, 0.2, 0.3};
 
-/// The slice through the axis, coloured by height at which particles started.
+/// The slice through the axis.
 Picture draw(const Particles<3>& p, double spacing) {
-  Picture picture{.caption = "A slice through the axis at rest.", .x_label = "x [m]", .y_label = "y [m]", .value_label = "distance from the axis [m]"};
+  Picture picture{.caption = "A slice through the axis at rest.",
+                  .x_label = "x [m]",
+                  .y_label = "y [m]",
+                  .value_label = "distance from the axis [m]"};
   for (const Vec3& x : p.position) {
     if (std::abs(x[2]) > spacing) continue;
     picture.x.push_back(x[0]);
@@ -75,14 +78,12 @@ Slumped simulate_slump(double relative_yield, int n) {
 Case make_case() {
   return {.name = "slump",
           .title = "Slump of a Bingham cylinder",
-          .measures = "How far a cylinder of clay as wide as tall has sunk after three seconds, against the formula of Pashias et al. (1996), for three yield "
-                      "stresses.",
+          .measures = "How far a cylinder of clay as wide as tall has sunk after three seconds, against the formula of Pashias et al. (1996), "
+                      "for three yield stresses.",
           .good = "Within 10 %, as good as the formula itself.",
           .good_error = 0.1,
           .error_label = "|slump / formula - 1|",
           .resolution_label = "particles high",
-          .profile_x = "",
-          .profile_y = "",
           .methods = {"yield stress 0.1 rho g H", "0.2 rho g H", "0.3 rho g H"},
           .quick = {8, 10, 12},
           .full = {8, 12, 16, 20},

@@ -97,8 +97,8 @@ Errors measure(const Particles<2>& p, const Reference& reference, int across) {
 Case make_case() {
   return {.name = "channel",
           .title = "Viscoplastic channel",
-          .measures = "The velocity across a plane channel of the Souza Mendes-Dutra fluid whose walls bear two yield stresses, from rest until it is "
-                      "steady, against quadrature, for three jump numbers.",
+          .measures = "The velocity across a plane channel of the Souza Mendes-Dutra fluid whose walls bear two yield stresses, from rest until "
+                      "it is steady, against quadrature, for three jump numbers.",
           .good = "Within 2 %: the plug is then as wide as it should be to a fraction of a spacing.",
           .good_error = 0.02,
           .error_label = "velocity: L2 error / L2",

@@ -146,14 +146,13 @@ Distances distances(const TriangleMesh& from, const TriangleMesh& to, double lim
 Case make_sphere_case() {
   return {.name = "surface_sphere",
           .title = "Surface of a ball of particles",
-          .measures = "What the surface of a ball of shaken particles (0.1 spacings) is off in volume, in the farthest distance from the sphere over the radius, and in its "
-                      "normals (root mean square angle), with kernels that are flattened at the surface and with round ones.",
+          .measures = "What the surface of a ball of shaken particles (0.1 spacings) is off in volume, in the farthest distance from the sphere "
+                      "over the radius, and in its normals (root mean square angle), with kernels that are flattened at the surface and with "
+                      "round ones.",
           .good = "Volume within 0.5 %, distance within 1 %, normals within 0.05 rad (3 degrees), 27 particles across.",
           .good_error = 0.01,
           .error_label = "error, relative or rad",
           .resolution_label = "particles across the ball",
-          .profile_x = "",
-          .profile_y = "",
           .methods = {"volume", "distance", "normals", "volume, round", "distance, round", "normals, round"},
           .quick = {10, 20, 40},
           .full = {10, 20, 40, 80},
@@ -163,14 +162,12 @@ Case make_sphere_case() {
 Case make_bunny_case() {
   return {.name = "surface_bunny",
           .title = "Surface of the bunny's particles",
-          .measures = "What the surface of the particles that fill the Stanford bunny is off its mesh: in volume, and in Hausdorff's distance over the bunny's "
-                      "height, with kernels that are flattened at the surface and with round ones.",
+          .measures = "What the surface of the particles that fill the Stanford bunny is off its mesh: in volume, and in Hausdorff's distance "
+                      "over the bunny's height, with kernels that are flattened at the surface and with round ones.",
           .good = "Volume within 1 %, distance within 3 % of the height, about a spacing: the rims of the ears are thinner than the particles.",
           .good_error = 0.01,
           .error_label = "error, relative",
           .resolution_label = "particles in the height",
-          .profile_x = "",
-          .profile_y = "",
           .methods = {"volume", "distance", "volume, round", "distance, round"},
           .quick = {20, 30, 40},
           .full = {20, 30, 40, 60, 80},

@@ -92,8 +92,6 @@ Case make_case() {
           .good_error = 0.05,
           .error_label = "|speed of the jet / Torricelli's - 1|",
           .resolution_label = "particles across the vessel",
-          .profile_x = "",
-          .profile_y = "",
           .methods = {"continuity density"},
           .quick = {18, 24, 36},
           .full = {18, 24, 36, 48, 72},

@@ -32,7 +32,10 @@ std::string write_runs_csv(const std::vector<RunRow>& rows) {
   std::string out = "case,method,resolution,particles,error,cpu_seconds,failure\n";
   for (const RunRow& row : rows) {
     out += fmt::format("{},{},{},", quoted(row.problem), quoted(row.method), row.resolution);
-    out += row.failure.empty() ? fmt::format("{},{},{},\n", row.n_particles, row.error, row.cpu_seconds) : fmt::format(",,,{}\n", quoted(row.failure));
+    if (row.failure.empty())
+      out += fmt::format("{},{},{},\n", row.n_particles, row.error, row.cpu_seconds);
+    else
+      out += fmt::format(",,,{}\n", quoted(row.failure));
   }
   return out;
 }

@@ -62,6 +62,30 @@ struct Range {
   }
 };
 
+/// A plot on its way to gnuplot.
+struct Script {
+  std::string data, plots;
+  Range x, y;
+  int n_series = 0;
+
+  void add(const Series& series, bool logarithmic) {
+    std::string rows;
+    for (std::size_t i = 0; i < series.curve.x.size(); ++i) {
+      const double x_i = series.curve.x[i], y_i = series.curve.y[i];
+      if (!can_be_drawn(x_i, y_i, logarithmic)) continue;
+      x.add(x_i);
+      y.add(y_i);
+      fmt::format_to(std::back_inserter(rows), "{:.6g} {:.6g}\n", x_i, y_i);
+    }
+    if (rows.empty()) return;
+    const std::string name = fmt::format("$d{}", n_series++);
+    data += fmt::format("{} << EOD\n{}EOD\n", name, rows);
+    add_plot(fmt::format("{} {} {}", name, style_of(series), series.label.empty() ? "notitle" : "title " + quoted(series.label)));
+  }
+
+  void add_plot(const std::string& command) { plots += (plots.empty() ? "plot " : ", ") + command; }
+};
+
 /// The digits of a decade at which an axis has numbers: the fewer, the more it spans.
 std::vector<double> digits_for(double span) {
   if (span > 1e3) return {1.0};
@@ -75,12 +99,14 @@ std::string logarithmic_axis(char axis, const Range& range) {
   const double low = range.low / 1.33, high = range.high * 1.33;
   std::string tics;
   for (double decade = std::pow(10.0, std::floor(std::log10(low))); decade <= high; decade *= 10.0)
-    for (const double digit : digits_for(high / low))
-      if (digit * decade >= low && digit * decade <= high) tics += fmt::format("{}'{:.4g}' {:.4g}", tics.empty() ? "" : ", ", digit * decade, digit * decade);
+    for (const double digit : digits_for(high / low)) {
+      const double at = digit * decade;
+      if (at >= low && at <= high) tics += fmt::format("{0}'{1:.4g}' {1:.4g}", tics.empty() ? "" : ", ", at);
+    }
   return fmt::format("set {0}range [{1:.6g}:{2:.6g}]\nset {0}tics ({3})\n", axis, low, high, tics);
 }
 
-/// Runs a script that draws to standard output, and takes what it drew.
+/// Runs a script, and takes the `<svg>` element that it drew.
 std::string run_script(std::string script, const std::string& name, const std::filesystem::path& folder) {
   const auto script_path = folder / (name + ".gnuplot"), svg_path = folder / (name + ".svg");
   script.insert(0, fmt::format("set output {}\n", quoted(svg_path.string())));
@@ -103,29 +129,19 @@ void check_gnuplot() {
 }
 
 std::string draw_plot(const Plot& plot, const std::string& name, const std::filesystem::path& folder) {
-  std::string data, commands;
-  Range x_range, y_range;
-  if (plot.level) y_range.add(*plot.level);
-  for (std::size_t k = 0; k < plot.series.size(); ++k) {
-    const Series& series = plot.series[k];
-    std::string rows;
-    for (std::size_t i = 0; i < series.curve.x.size(); ++i) {
-      const double x = series.curve.x[i], y = series.curve.y[i];
-      if (!can_be_drawn(x, y, plot.logarithmic)) continue;
-      x_range.add(x);
-      y_range.add(y);
-      fmt::format_to(std::back_inserter(rows), "{:.6g} {:.6g}\n", x, y);
-    }
-    if (rows.empty()) continue;
-    data += fmt::format("$d{} << EOD\n{}EOD\n", k, rows);
-    commands += fmt::format("{}$d{} {} {}", commands.empty() ? "plot " : ", ", k, style_of(series),
-                            series.label.empty() ? "notitle" : "title " + quoted(series.label));
+  Script script;
+  for (const Series& series : plot.series) script.add(series, plot.logarithmic);
+  if (script.plots.empty()) return "<p>Nothing to draw.</p>";
+  if (plot.level) {
+    script.y.add(*plot.level);
+    script.add_plot(fmt::format("{:.6g} with lines lw 1 dt 3 lc rgb '#555555' title 'a good number'", *plot.level));
   }
-  if (commands.empty()) return "<p>Nothing to draw.</p>";
-  if (plot.level) commands += fmt::format(", {:.6g} with lines lw 1 dt 3 lc rgb '#555555' title 'a good number'", *plot.level);
-  std::string script = head(name, 520, 400) + labels(plot.x_label, plot.y_label) + "set key outside above Left reverse horizontal samplen 2\n";
-  script += plot.logarithmic ? "set logscale xy\n" + logarithmic_axis('x', x_range) + logarithmic_axis('y', y_range) : "set offsets graph 0.03, graph 0.03, graph 0.03, graph 0.03\nset autoscale noextend\n";
-  return run_script(script + data + commands + "\n", name, folder);
+  std::string settings = head(name, 520, 400) + labels(plot.x_label, plot.y_label) + "set key outside above Left reverse horizontal samplen 2\n";
+  if (plot.logarithmic)
+    settings += "set logscale xy\n" + logarithmic_axis('x', script.x) + logarithmic_axis('y', script.y);
+  else
+    settings += "set offsets graph 0.03, graph 0.03, graph 0.03, graph 0.03\nset autoscale noextend\n";
+  return run_script(settings + script.data + script.plots + "\n", name, folder);
 }
 
 std::string draw_picture(const Picture& picture, const std::string& name, const std::filesystem::path& folder) {

@@ -58,7 +58,8 @@ Plot cost_plot(const CaseResult& result) {
 /// The line C resolution^-order through the middle of a curve in the logarithms.
 Curve fitted_line(const Curve& curve, double order) {
   double log_c = 0.0;
-  for (std::size_t k = 0; k < curve.x.size(); ++k) log_c += (std::log(curve.y[k]) + order * std::log(curve.x[k])) / static_cast<double>(curve.x.size());
+  const auto n = static_cast<double>(curve.x.size());
+  for (std::size_t k = 0; k < curve.x.size(); ++k) log_c += (std::log(curve.y[k]) + order * std::log(curve.x[k])) / n;
   Curve line;
   for (const double x : {curve.x.front(), curve.x.back()}) {
     line.x.push_back(x);
@@ -73,7 +74,8 @@ Plot convergence_plot(const CaseResult& result) {
   for (std::size_t m = 0; m < problem.methods.size(); ++m) {
     const Curve curve = collect(result.runs, m, [](const Run& run) { return run.resolution; }, error_of);
     const auto order = fitted_order(result.runs, m);
-    plot.series.push_back({fmt::format("{}{}", problem.methods[m], order ? fmt::format(", order {:.2f}", *order) : ""), curve, Series::Look::points, m});
+    const std::string label = problem.methods[m] + (order ? fmt::format(", order {:.2f}", *order) : "");
+    plot.series.push_back({label, curve, Series::Look::points, m});
     if (order) plot.series.push_back({"", fitted_line(curve, *order), Series::Look::dashes, m});
   }
   return plot;
@@ -109,7 +111,8 @@ Plot profile_plot(const CaseResult& result) {
 std::string write_figures(const CaseResult& result, const std::filesystem::path& folder) {
   const Case& problem = result.problem;
   std::string out = "<div class=\"plots\">\n";
-  out += write_figure(draw_plot(cost_plot(result), problem.name + "_cost", folder), "Error against CPU seconds of one thread; a point for each resolution.");
+  out += write_figure(draw_plot(cost_plot(result), problem.name + "_cost", folder),
+                      "Error against CPU seconds of one thread; a point for each resolution.");
   out += write_figure(draw_plot(convergence_plot(result), problem.name + "_convergence", folder), "Error against resolution, with the fitted order.");
   const Plot profile = profile_plot(result);
   if (!profile.series.empty())
@@ -147,8 +150,8 @@ std::string write_table(const CaseResult& result) {
     if (run.failed())
       out += fmt::format("<td class=\"failed\" colspan=\"3\">failed: {}</td></tr>\n", escape_html(run.failure));
     else
-      out += fmt::format("<td>{}</td><td>{:.3g}</td><td>{:.2f}</td></tr>\n", run.measured.n_particles > 0 ? fmt::to_string(run.measured.n_particles) : "",
-                         run.measured.error, run.measured.cpu_seconds);
+      out += fmt::format("<td>{}</td><td>{:.3g}</td><td>{:.2f}</td></tr>\n",
+                         run.measured.n_particles > 0 ? fmt::to_string(run.measured.n_particles) : "", run.measured.error, run.measured.cpu_seconds);
   }
   return out + "</table>\n";
 }
@@ -185,8 +188,8 @@ std::optional<double> fitted_order(const std::vector<Run>& runs, std::size_t met
 
 Section write_case_section(const CaseResult& result, bool quick, const std::filesystem::path& folder) {
   const Case& problem = result.problem;
-  std::string out = fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<p>{} {}</p>\n", problem.name, escape_html(problem.title), escape_html(problem.measures),
-                                escape_html(problem.good));
+  std::string out = fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<p>{} {}</p>\n", problem.name, escape_html(problem.title),
+                                escape_html(problem.measures), escape_html(problem.good));
   if (result.failed()) out += "<p class=\"failed\">Some of its runs failed: see the table.</p>\n";
   out += write_figures(result, folder) + write_table(result);
   out += fmt::format("<p>To repeat it: <code>./smelt report {}{}</code></p>\n</section>\n", problem.name, quick ? " --quick" : "");
@@ -205,7 +208,8 @@ std::string write_page(const PageHead& head, const std::vector<Section>& section
       "plot is a good number as the case's text has it; below and to the left is better.</p>\n";
   if (head.quick) out += "<p>These are the coarse resolutions of the quick suite; without <code>--quick</code> finer ones run.</p>\n";
   if (sections.size() < n_expected) out += fmt::format("<p class=\"failed\">{} of {} sections so far.</p>\n", sections.size(), n_expected);
-  out += "<table><tr><th>case</th><th>method</th><th>finest</th><th>error</th><th>a good number</th><th>met</th><th>order</th><th>CPU seconds</th></tr>\n";
+  out +=
+      "<table><tr><th>case</th><th>method</th><th>finest</th><th>error</th><th>a good number</th><th>met</th><th>order</th><th>CPU seconds</th></tr>\n";
   for (const Section& section : sections) out += section.summary;
   out += "</table>\n";
   for (const Section& section : sections) out += section.body;

@@ -112,7 +112,8 @@ void make_report(const Selection& selection, const ReportOptions& options, Progr
   if (options.write_expected) return write_expected(options.expected, std::move(expected), rows);
   if (options.check)
     fail_with(compare_with_expected(expected, rows),
-              fmt::format("worse than {}; where the change is meant, `./smelt report --quick --write-expected` stores the errors anew", options.expected.string()));
+              fmt::format("worse than {}; where the change is meant, `./smelt report --quick --write-expected` stores the errors anew",
+                          options.expected.string()));
   fail_with(failures(rows), fmt::format("the rest is in {}", (options.folder / "index.html").string()));
 }
 

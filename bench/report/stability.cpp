@@ -62,7 +62,8 @@ std::string case_row(const HardCaseResult& result) {
   std::string row = fmt::format("<tr><td>{}</td><td>{}</td><td>{:.2g}</td><td>{:.2g}</td><td>{}</td>", escape_html(result.name), verdict(usual),
                                 usual.seen.energy_gain, usual.seen.density_error, usual.seen.steps);
   if (smallest == result.trials.end()) return row + "<td>none</td><td></td></tr>\n";
-  return row + fmt::format("<td>{:g} to {:g}</td><td>{:.2g} to {:.2g}</td></tr>\n", smallest->courant, largest->courant, smallest->mean_step(), largest->mean_step());
+  return row + fmt::format("<td>{:g} to {:g}</td><td>{:.2g} to {:.2g}</td></tr>\n", smallest->courant, largest->courant, smallest->mean_step(),
+                           largest->mean_step());
 }
 
 /// The cells of one method by how they fared.
@@ -127,23 +128,26 @@ Stability probe_stability(bool quick, unsigned threads, Progress& progress) {
 
 Section write_stability_section(const Stability& stability, bool quick, const std::filesystem::path& folder) {
   std::string out = fmt::format(
-      "<section id=\"stability\">\n<h2>Stability</h2>\n<p>Scenes at the edge of what the method can be asked. A scene holds where it ends, finite, and no "
-      "more energy comes from nowhere than {:g} % of its kinetic energy at the start. Figures are those at the CFL factor {:g}; the last two columns say "
-      "between which of the factors tried it held, and how long the steps then were.</p>\n"
-      "<table><tr><th>scene</th><th>verdict</th><th>energy gained / kinetic</th><th>largest density error</th><th>steps</th><th>held at CFL factors</th>"
-      "<th>mean step [s]</th></tr>\n",
+      "<section id=\"stability\">\n<h2>Stability</h2>\n<p>Scenes at the edge of what the method can be asked. A scene holds where it ends, finite, "
+      "and no more energy comes from nowhere than {:g} % of its kinetic energy at the start. Figures are those at the CFL factor {:g}; the last two "
+      "columns say between which of the factors tried it held, and how long the steps then were.</p>\n"
+      "<table><tr><th>scene</th><th>verdict</th><th>energy gained / kinetic</th><th>largest density error</th><th>steps</th>"
+      "<th>held at CFL factors</th><th>mean step [s]</th></tr>\n",
       100.0 * extremes::energy_bar, default_courant);
   for (const HardCaseResult& result : stability.cases) out += case_row(result);
   out += "</table>\n<div class=\"plots\">\n";
   out += write_figure(draw_map(stability.map, false, folder),
-                      fmt::format("The explicit method, whose stress follows the strain rate at once: a block of 216 particles that creeps, after {} steps, by CFL "
-                                  "factor and jump number. Its step is C min(h/(c + v), h^2 rho/(8 eta)).",
+                      fmt::format("The explicit method, whose stress follows the strain rate at once: a block of 216 particles that creeps, after {} "
+                                  "steps, by CFL factor and jump number. Its step is C min(h/(c + v), h^2 rho/(8 eta)).",
                                   n_map_steps));
   out += write_figure(draw_map(stability.map, true, folder), "The same with the relaxed stress, whose step does not depend on the viscosity.");
   out += write_figure(draw_steps(stability.map, folder), "The longest steps of both maps at which the block held: what the relaxed stress is for.");
   out += fmt::format("</div>\n<p>To repeat it: <code>./smelt report stability{}</code></p>\n</section>\n", quick ? " --quick" : "");
-  const auto n_held = std::count_if(stability.cases.begin(), stability.cases.end(), [](const HardCaseResult& result) { return result.at(default_courant)->held(); });
-  return {fmt::format("<tr><td><a href=\"#stability\">Stability</a></td><td colspan=\"7\">{} of {} hard cases held</td></tr>\n", n_held, stability.cases.size()), out};
+  const auto n_held = std::count_if(stability.cases.begin(), stability.cases.end(),
+                                    [](const HardCaseResult& result) { return result.at(default_courant)->held(); });
+  return {fmt::format("<tr><td><a href=\"#stability\">Stability</a></td><td colspan=\"7\">{} of {} hard cases held</td></tr>\n", n_held,
+                      stability.cases.size()),
+          out};
 }
 
 std::string write_stability_csv(const Stability& stability) {

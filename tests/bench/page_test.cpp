@@ -47,7 +47,8 @@ TEST(Page, HasNoOrderOfOneRun) {
 TEST(Page, StatesWhatItIsAndHowFarItIs) {
   const PageHead head{"a machine, 2 cores", "0.1.0", "2026-01-31 12:34 UTC", "./smelt report --quick", true};
   const std::string page = write_page(head, {{"<tr><td>one's row</td></tr>", "<section>one</section>"}}, 2);
-  for (const char* text : {"a machine, 2 cores", "0.1.0", "2026-01-31 12:34 UTC", "./smelt report --quick", "one's row", "<section>one</section>", "1 of 2 sections so far"})
+  for (const char* text : {"a machine, 2 cores", "0.1.0", "2026-01-31 12:34 UTC", "./smelt report --quick", "one's row", "<section>one</section>",
+                           "1 of 2 sections so far"})
     EXPECT_NE(page.find(text), std::string::npos) << text;
   EXPECT_EQ(write_page(head, {{"", "one"}, {"", "two"}}, 2).find("so far"), std::string::npos);
 }

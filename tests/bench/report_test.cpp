@@ -73,5 +73,27 @@ TEST(Report, LosesNothingToAFailure) {
   for (const char* file : {"runs.csv", "profile_first.csv", "profile_second.csv"}) EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
 }
 
+/// With gnuplot: a stored error that is met, and one that is not.
+TEST(Report, ChecksAgainstStoredErrors) {
+  ReportOptions options;
+  options.quick = true;
+  options.folder = std::filesystem::path(testing::TempDir()) / "check_test";
+  options.expected = std::filesystem::path(testing::TempDir()) / "check_test.toml";
+  Case problem = made_up_case("first");
+  problem.methods.resize(1);
+  Progress silent;
+  try {
+    options.write_expected = true;
+    make_report({{problem}, false}, options, silent);
+  } catch (const Error& error) {
+    GTEST_SKIP() << error.what();
+  }
+  options.write_expected = false;
+  options.check = true;
+  EXPECT_NO_THROW(make_report({{problem}, false}, options, silent));
+  problem.run = [](std::size_t, double resolution) { return Measurement{.error = 2.3 / (resolution * resolution)}; };
+  EXPECT_THROW(make_report({{problem}, false}, options, silent), Error);
+}
+
 }  // namespace
 }  // namespace smelt

@@ -195,6 +195,17 @@ TEST_F(CommandLine, BenchAnswersForPeopleAndMachines) {
   EXPECT_EQ(run({"bench"}).status, 2);
 }
 
+TEST_F(CommandLine, ReportNamesItsCasesAndWhatItNeeds) {
+  const Result unknown = run({"report", "chanel", "--quick", "--out", output("report")});
+  EXPECT_EQ(unknown.status, 3);
+  EXPECT_NE(unknown.err.find("there is no case \"chanel\" (did you mean \"channel\"?); cases are channel, "), std::string::npos) << unknown.err;
+  EXPECT_EQ(run({"report", "channel", "--check"}).status, 2);  // errors are stored of the quick suite alone
+  const Result without = run({"report", "channel", "--quick", "--out", output("report")}, [] { setenv("PATH", "/nowhere", 1); });
+  EXPECT_EQ(without.status, 3);
+  EXPECT_NE(without.err.find("gnuplot-nox"), std::string::npos) << without.err;
+  EXPECT_FALSE(fs::exists(output("report")));
+}
+
 TEST_F(CommandLine, WrongUsageIsExitTwo) {
   EXPECT_EQ(run({}).status, 2);
   EXPECT_EQ(run({"melt"}).status, 2);
