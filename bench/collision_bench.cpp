@@ -2,8 +2,8 @@
 // collision is what the drift takes more than without ground; the wall terms are timed stage by stage, looking up facets included.
 //   bench_collision [layers] [cells]      of particles, 10 unless said (always some 10 thousand particles); of the terrain along a side, one mesh alone
 
+#include "bench/cases/set_up.h"
 #include "core/parallel.h"
-#include "tests/accuracy/set_up.h"
 
 #include <fmt/format.h>
 

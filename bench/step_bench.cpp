@@ -1,6 +1,6 @@
 #include "bench/step_bench.h"
 
-#include "tests/accuracy/set_up.h"
+#include "bench/cases/set_up.h"
 
 #include <malloc.h>
 #include <unistd.h>

@@ -1,5 +1,6 @@
 #include "cli/bench_commands.h"
 
+#include "bench/pairs_bench.h"
 #include "bench/step_bench.h"
 #include "bench/thesis_bench.h"
 #include "scenes/version.h"
@@ -75,6 +76,26 @@ void print_thesis_bench(const std::string& only, bool as_json) {
                  shot.seconds_per_step, times_as_fast);
   }
   if (as_json) print_json(std::move(all));
+}
+
+void print_pairs_bench(std::size_t n_particles, bool as_json) {
+  const PairsBench bench = bench_pairs(n_particles);
+  const MachinePeaks& peaks = bench.peaks;
+  if (as_json) {
+    nlohmann::ordered_json json;
+    json["peaks"] = {{"flops", peaks.flops}, {"l1_bytes", peaks.l1_bytes}, {"l2_bytes", peaks.l2_bytes}, {"l3_bytes", peaks.l3_bytes}, {"memory_bytes", peaks.memory_bytes}};
+    for (const PassTiming& p : bench.passes)
+      json["passes"].push_back({{"pass", p.pass}, {"instructions", p.instructions}, {"particles", p.n_particles}, {"pairs_per_second", p.pairs_per_second},
+                                {"flops_per_pair", p.flops_per_pair}, {"bytes_per_pair", p.bytes_per_pair}});
+    return print_json(std::move(json));
+  }
+  fmt::print("one core: {:.0f} Gflop/s in single precision; reads {:.0f} GB/s from 24 KiB, {:.0f} from 384 KiB, {:.0f} from 6 MiB, {:.1f} from 256 MiB\n",
+             1e-9 * peaks.flops, 1e-9 * peaks.l1_bytes, 1e-9 * peaks.l2_bytes, 1e-9 * peaks.l3_bytes, 1e-9 * peaks.memory_bytes);
+  fmt::print("| pass | instructions | million pairs/s | flops a pair | Gflop/s | bytes a pair | GB/s | of the flops | of the second cache's bytes |\n");
+  fmt::print("|---|---|---|---|---|---|---|---|---|\n");
+  for (const PassTiming& p : bench.passes)
+    fmt::print("| {} | {} | {:.0f} | {:.0f} | {:.1f} | {:.0f} | {:.1f} | {:.0f} % | {:.0f} % |\n", p.pass, p.instructions, 1e-6 * p.pairs_per_second,
+               p.flops_per_pair, 1e-9 * p.flops(), p.bytes_per_pair, 1e-9 * p.bytes(), 100.0 * p.flops() / peaks.flops, 100.0 * p.bytes() / peaks.l2_bytes);
 }
 
 }  // namespace smelt

@@ -2,6 +2,7 @@
 
 #include "bench/thesis_bench.h"
 #include "cli/bench_commands.h"
+#include "cli/report_command.h"
 #include "cli/terminal_progress.h"
 #include "core/error.h"
 #include "scenes/check_scene.h"
@@ -178,7 +179,8 @@ void add_bench(CLI::App& app, BenchOptions& o, std::function<void()>& work) {
     return command;
   };
   for (CLI::App* command : {add("step", "particle-steps a second of a full melting step", [&o] { print_step_bench(o.n_particles, o.json); }),
-                            add("terms", "what each term of a scene costs", [&o] { print_terms_bench(o.n_particles, o.json); })})
+                            add("terms", "what each term of a scene costs", [&o] { print_terms_bench(o.n_particles, o.json); }),
+                            add("pairs", "the pair loops on one core, beside what it can do at best", [&o] { print_pairs_bench(o.n_particles, o.json); })})
     command->add_option("--particles", o.n_particles, "about how many; 100000 unless said")->check(CLI::Range(std::size_t{100}, std::size_t{100000000}));
   std::vector<std::string> shots;
   for (const ThesisShot& shot : thesis_shots()) shots.push_back(shot.name);
@@ -208,6 +210,7 @@ int run_parsed(int argc, char** argv) {
   SceneOptions o;
   std::string file;
   BenchOptions bench;
+  ReportOptions report;
   std::function<void()> work;
 
   const auto add = [&](const char* name, const char* what, auto&& body) {
@@ -242,6 +245,7 @@ int run_parsed(int argc, char** argv) {
       ->add_option("file", file, "the file")
       ->required();
   add_bench(app, bench, work);
+  add_report(app, report, work);
   add("scene-reference", "print all keys of a scene file", [] { fmt::print("{}", write_scene_reference()); });
 
   try {

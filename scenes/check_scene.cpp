@@ -75,11 +75,10 @@ void take_trial_steps(const Scene& scene, SimulationSetup& setup, int n_trial_st
     if (!values.empty()) state_bytes += static_cast<double>(values.size() * sizeof(values[0]));
   });
   const double n = static_cast<double>(state.size());
-  const double pass_bytes = n * (PairFields<3, Real>::motion_stride + PairFields<3, Real>::force_stride(true) + 3.0) * sizeof(Real) +
+  const double pass_bytes = n * (PairFields<3, Real>::stride_of(true) + 3.0) * sizeof(Real) +
                             n * sizeof(RateSums<3, Real>) + 3.0 * n * sizeof(Vec3);
-  const double list_bytes = static_cast<double>(solver.neighbours().index.size()) * sizeof(std::int32_t) + 16.0 * n;
-  // A neighbour search and a sort hold a second copy for a moment.
-  forecast.bytes = (state_bytes + pass_bytes + 2.0 * list_bytes) * std::max(1.0, n_end / n);
+  const auto list_bytes = static_cast<double>(solver.neighbours().n_bytes());
+  forecast.bytes = (state_bytes + pass_bytes + list_bytes) * std::max(1.0, n_end / n);
 }
 
 }  // namespace

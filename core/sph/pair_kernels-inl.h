@@ -21,6 +21,8 @@ template <typename Real>
 using Tag = hn::CappedTag<Real, pair_lanes<Real>>;
 template <typename Real>
 using Simd = hn::Vec<Tag<Real>>;
+template <typename Real>
+inline constexpr int lanes = static_cast<int>(hn::MaxLanes(Tag<Real>()));
 
 // Each kernel has its constants folded, gradient_over_r = F = (dW/dr)/r and value = W from r^2, both 0 beyond the
 // support and finite at r = 0, where lists are padded with the particle itself.

@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include <span>
 #include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
@@ -18,58 +19,113 @@ namespace smelt {
 namespace HWY_NAMESPACE {
 
 /// Turns four vectors of rows (in blocks of four lanes) into four vectors of columns.
-HWY_INLINE void transpose_blocks(Simd<float> (&rows)[4]) {
+HWY_INLINE void transpose_blocks(Simd<float>& row0, Simd<float>& row1, Simd<float>& row2, Simd<float>& row3) {
   const Tag<float> d;
   const hn::Repartition<double, Tag<float>> wide;
-  const auto pairs01_low = hn::BitCast(wide, hn::InterleaveLower(d, rows[0], rows[1]));
-  const auto pairs23_low = hn::BitCast(wide, hn::InterleaveLower(d, rows[2], rows[3]));
-  const auto pairs01_high = hn::BitCast(wide, hn::InterleaveUpper(d, rows[0], rows[1]));
-  const auto pairs23_high = hn::BitCast(wide, hn::InterleaveUpper(d, rows[2], rows[3]));
-  rows[0] = hn::BitCast(d, hn::InterleaveLower(wide, pairs01_low, pairs23_low));
-  rows[1] = hn::BitCast(d, hn::InterleaveUpper(wide, pairs01_low, pairs23_low));
-  rows[2] = hn::BitCast(d, hn::InterleaveLower(wide, pairs01_high, pairs23_high));
-  rows[3] = hn::BitCast(d, hn::InterleaveUpper(wide, pairs01_high, pairs23_high));
+  const auto pairs01_low = hn::BitCast(wide, hn::InterleaveLower(d, row0, row1));
+  const auto pairs23_low = hn::BitCast(wide, hn::InterleaveLower(d, row2, row3));
+  const auto pairs01_high = hn::BitCast(wide, hn::InterleaveUpper(d, row0, row1));
+  const auto pairs23_high = hn::BitCast(wide, hn::InterleaveUpper(d, row2, row3));
+  row0 = hn::BitCast(d, hn::InterleaveLower(wide, pairs01_low, pairs23_low));
+  row1 = hn::BitCast(d, hn::InterleaveUpper(wide, pairs01_low, pairs23_low));
+  row2 = hn::BitCast(d, hn::InterleaveLower(wide, pairs01_high, pairs23_high));
+  row3 = hn::BitCast(d, hn::InterleaveUpper(wide, pairs01_high, pairs23_high));
 }
 
-/// Loads the first n_fields of the records of one vector of neighbours: fields[f] holds field f of each.
-template <int n_fields, int stride>
-HWY_INLINE void load_records(const float* records, const std::int32_t* index, Simd<float> (&fields)[padded_record(n_fields)]) {
-  static_assert(pair_lanes<float> == 8);
+/// Fields [first, first + 4) of the records at `at`, one a lane.
+template <int n_lanes>
+HWY_INLINE void load_four_fields(const float* const (&at)[n_lanes], int first, Simd<float>* fields) {
   const Tag<float> d;
   const hn::Half<Tag<float>> half;
-  const float* at[8];
-  for (int lane = 0; lane < 8; ++lane) at[lane] = records + static_cast<std::size_t>(index[lane]) * stride;
-  for (int group = 0; group < padded_record(n_fields); group += 4) {
-    Simd<float> rows[4];
-    for (int k = 0; k < 4; ++k)
-      rows[k] = hn::Combine(d, hn::LoadU(half, at[k + 4] + group), hn::LoadU(half, at[k] + group));
-    transpose_blocks(rows);
-    for (int k = 0; k < 4; ++k) fields[group + k] = rows[k];
+  const auto block = [&](int lane) HWY_ATTR { return hn::LoadU(hn::FixedTag<float, 4>(), at[lane] + first); };
+  Simd<float> rows[4];
+  for (int k = 0; k < 4; ++k) {
+    if constexpr (n_lanes == 16)
+      rows[k] = hn::Combine(d, hn::Combine(half, block(k + 12), block(k + 8)), hn::Combine(half, block(k + 4), block(k)));
+    else
+      rows[k] = hn::Combine(d, block(k + 4), block(k));
+  }
+  transpose_blocks(rows[0], rows[1], rows[2], rows[3]);
+  for (int k = 0; k < 4; ++k) fields[k] = rows[k];
+}
+
+/// Fields [first, first + 8): half the loads of twice four.
+template <int n_lanes>
+HWY_INLINE void load_eight_fields(const float* const (&at)[n_lanes], int first, Simd<float>* fields) {
+  const Tag<float> d;
+  const auto record = [&](int lane) HWY_ATTR { return hn::LoadU(hn::FixedTag<float, 8>(), at[lane] + first); };
+  Simd<float> rows[8];
+  for (int k = 0; k < 8; ++k) {
+    if constexpr (n_lanes == 16)
+      rows[k] = hn::Combine(d, record(k + 8), record(k));
+    else
+      rows[k] = record(k);
+  }
+  transpose_blocks(rows[0], rows[1], rows[2], rows[3]);
+  transpose_blocks(rows[4], rows[5], rows[6], rows[7]);
+  // Blocks of row k: field k of neighbours 0 to 3, field k + 4 of them, and so on for 8 to 11; of row k + 4, of 4 to 7 and 12 to 15.
+  for (int k = 0; k < 4; ++k) {
+    fields[k] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(rows[k + 4]), rows[k]);
+    fields[k + 4] = hn::OddEvenBlocks(rows[k + 4], hn::SwapAdjacentBlocks(rows[k]));
   }
 }
 
+/// Fields [first, first + n) of the records of one vector of neighbours: fields[f] holds field first + f of each.
+template <int first, int n>
+HWY_INLINE void load_fields(const float* records, int stride, const std::int32_t* index, Simd<float> (&fields)[padded_fields(n)]) {
+  static_assert(first % 4 == 0);
+  constexpr int n_loaded = padded_fields(n);
+  const float* at[lanes<float>];
+  for (int lane = 0; lane < lanes<float>; ++lane) at[lane] = records + static_cast<std::ptrdiff_t>(index[lane]) * stride;
+  for (int f = 0; f + 8 <= n_loaded; f += 8) load_eight_fields(at, first + f, fields + f);
+  if constexpr (n_loaded % 8 != 0) load_four_fields(at, first + n_loaded - 4, fields + n_loaded - 4);
+}
+
 /// Double precision serves studies, not speed: plain gathers.
-template <int n_fields, int stride>
-HWY_INLINE void load_records(const double* records, const std::int32_t* index,
-                             Simd<double> (&fields)[padded_record(n_fields)]) {
+template <int first, int n>
+HWY_INLINE void load_fields(const double* records, int stride, const std::int32_t* index, Simd<double> (&fields)[padded_fields(n)]) {
   const Tag<double> d;
   const Tag<std::int64_t> di;
   const auto indices = hn::PromoteTo(di, hn::LoadU(hn::Rebind<std::int32_t, decltype(di)>(), index));
   const auto offsets = hn::Mul(indices, hn::Set(di, stride));
-  for (int f = 0; f < n_fields; ++f) fields[f] = hn::GatherIndex(d, records + f, offsets);
+  for (int f = 0; f < n; ++f) fields[f] = hn::GatherIndex(d, records + first + f, offsets);
 }
 
-/// One scalar field of a vector of neighbours.
-template <typename Real>
-HWY_INLINE Simd<Real> load_scalar(const std::vector<Real>& field, const std::int32_t* index) {
-  alignas(32) Real lanes[pair_lanes<Real>];
-  for (int lane = 0; lane < pair_lanes<Real>; ++lane) lanes[lane] = field[static_cast<std::size_t>(index[lane])];
-  return hn::Load(Tag<Real>(), lanes);
+template <int field>
+HWY_INLINE Simd<float> load_field(const float* records, int stride, const std::int32_t* index) {
+  Simd<float> four[4];
+  load_fields<field / 4 * 4, 4>(records, stride, index, four);
+  return four[field % 4];
 }
 
-template <typename Real>
-HWY_INLINE Real sum_lanes(Simd<Real> v) {
-  return hn::GetLane(hn::SumOfLanes(Tag<Real>(), v));
+template <int field>
+HWY_INLINE Simd<double> load_field(const double* records, int stride, const std::int32_t* index) {
+  Simd<double> fields[4];
+  load_fields<field, 1>(records, stride, index, fields);
+  return fields[0];
+}
+
+/// Adds up what `add(index, sums)` adds to `sums`, vectors of lanes, for every vector of neighbours in `row`. Lane k of a group of pair_lanes is
+/// added to lane k + pair_lanes/2, then these halves are summed, whatever the length of a vector: the same bytes on every machine.
+template <int n_sums, typename Real, typename Add>
+HWY_INLINE void sum_row(std::span<const std::int32_t> row, Real (&total)[n_sums], const Add& add) {
+  const Tag<Real> d;
+  const hn::CappedTag<Real, pair_lanes<Real> / 2> half;
+  constexpr std::size_t n_parts = pair_lanes<Real> / lanes<Real>;
+  static_assert(n_parts == 1 || n_parts == 2);
+  hn::Vec<decltype(half)> folded[n_sums];
+  for (std::size_t part = 0; part < n_parts; ++part) {
+    Simd<Real> sums[n_sums];
+    for (auto& sum : sums) sum = hn::Zero(d);
+    for (std::size_t k = part * lanes<Real>; k < row.size(); k += pair_lanes<Real>) add(row.data() + k, sums);
+    for (int s = 0; s < n_sums; ++s) {
+      if constexpr (n_parts == 1)
+        folded[s] = hn::Add(hn::LowerHalf(half, sums[s]), hn::UpperHalf(half, sums[s]));
+      else
+        folded[s] = part == 0 ? sums[s] : hn::Add(folded[s], sums[s]);
+    }
+  }
+  for (int s = 0; s < n_sums; ++s) total[s] = hn::GetLane(hn::SumOfLanes(half, folded[s]));
 }
 
 /// What every pair needs of its neighbours.
@@ -77,14 +133,14 @@ template <int Dim, typename Real>
 struct Neighbours {
   Simd<Real> x_ij[Dim], v_ij[Dim], volume, density;
 
-  HWY_INLINE Neighbours(const Real* motion_i, const Real* motion, const std::int32_t* index) {
+  HWY_INLINE Neighbours(const Real* record_i, const Real* records, int stride, const std::int32_t* index) {
     using Fields = PairFields<Dim, Real>;
     const Tag<Real> d;
-    Simd<Real> fields[Fields::motion_stride];
-    load_records<2 * Dim + 2, Fields::motion_stride>(motion, index, fields);
-    for (int a = 0; a < Dim; ++a) x_ij[a] = hn::Sub(hn::Set(d, motion_i[a]), fields[a]);
+    Simd<Real> fields[padded_fields(Fields::n_motion)];
+    load_fields<0, Fields::n_motion>(records, stride, index, fields);
+    for (int a = 0; a < Dim; ++a) x_ij[a] = hn::Sub(hn::Set(d, record_i[a]), fields[a]);
     for (int a = 0; a < Dim; ++a)
-      v_ij[a] = hn::Sub(hn::Set(d, motion_i[Fields::velocity_at + a]), fields[Fields::velocity_at + a]);
+      v_ij[a] = hn::Sub(hn::Set(d, record_i[Fields::velocity_at + a]), fields[Fields::velocity_at + a]);
     volume = fields[Fields::volume_at];
     density = fields[Fields::density_at];
   }

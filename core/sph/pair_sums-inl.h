@@ -12,106 +12,106 @@
 
 #include <hwy/highway.h>
 
+#include <algorithm>
+#include <array>
 #include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
 namespace smelt {
 namespace HWY_NAMESPACE {
 
+/// Where the first pass keeps its sums.
+template <int Dim>
+struct RateIndex {
+  static constexpr int density_rate = 0, velocity_moment = 1, position_moment = velocity_moment + Dim * Dim,
+                       heat = position_moment + n_symmetric<Dim>, moment_trace = heat + 1, heat_imbalance = moment_trace + 1,
+                       xsph = heat_imbalance + Dim, n_sums = xsph + Dim;
+};
+
 template <typename PairKernel, int Dim, typename Real, bool with_stress, HeatTerms heat_terms, bool with_xsph>
 void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, double h, std::size_t begin,
                std::size_t end, RateSums<Dim, Real>* sums) {
   const Tag<Real> d;
   const PairKernel kernel(h);
-  constexpr std::size_t lanes = pair_lanes<Real>;
   constexpr bool with_heat = heat_terms != HeatTerms::none;
   using Fields = PairFields<Dim, Real>;
+  using At = RateIndex<Dim>;
+  const Real* records = fields.records.data();
+  constexpr int stride = Fields::stride_of(with_stress);
   [[maybe_unused]] const auto least_balance = hn::Set(d, Real(0.2)), most_balance = hn::Set(d, Real(1.8));
   [[maybe_unused]] const auto one = hn::Set(d, Real(1)), least_sum = hn::Set(d, Real(1e-30));
   for (std::size_t i = begin; i < end; ++i) {
-    auto density_rate = hn::Zero(d);
-    auto heat = hn::Zero(d);
-    auto moment_trace = hn::Zero(d);
-    Simd<Real> velocity_moment[Dim * Dim];
-    Simd<Real> position_moment[Dim * (Dim + 1) / 2];
-    Simd<Real> heat_imbalance[Dim];
-    Simd<Real> xsph[Dim];
-    for (auto& m : velocity_moment) m = hn::Zero(d);
-    for (auto& m : position_moment) m = hn::Zero(d);
-    for (auto& x : heat_imbalance) x = hn::Zero(d);
-    for (auto& x : xsph) x = hn::Zero(d);
-
-    const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
-    [[maybe_unused]] const auto inverse_density_i = hn::Set(d, 1 / motion_i[Fields::density_at]);
-    [[maybe_unused]] const Real* heat_i = nullptr;
-    if constexpr (with_heat) heat_i = fields.heat.data() + i * Fields::heat_stride;
-    const std::int32_t* row = lists.index.data() + lists.begin[i];
-    const std::size_t n = lists.padded[i];
-    for (std::size_t k = 0; k < n; k += lanes) {
-      const Neighbours<Dim, Real> pair(motion_i, fields.motion.data(), row + k);
+    const Real* record_i = records + i * stride;
+    [[maybe_unused]] const auto inverse_density_i = hn::Set(d, 1 / record_i[Fields::density_at]);
+    const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const Neighbours<Dim, Real> pair(record_i, records, stride, index);
       const auto &x_ij = pair.x_ij, &v_ij = pair.v_ij;
       const auto r2 = dot<Dim, Real>(x_ij, x_ij);
       const auto f = kernel.gradient_over_r(r2);
       const auto volume_f = hn::Mul(pair.volume, f);
-      density_rate = hn::MulAdd(hn::Mul(pair.density, volume_f), dot<Dim, Real>(v_ij, x_ij), density_rate);
+      sum[At::density_rate] = hn::MulAdd(hn::Mul(pair.density, volume_f), dot<Dim, Real>(v_ij, x_ij), sum[At::density_rate]);
       if constexpr (with_stress || with_heat) {
         // v_j - v_i = -v_ij and x_j - x_i = -x_ij: one sign for all.
         for (int b = 0; b < Dim; ++b) {
           const auto weighted = hn::Mul(volume_f, x_ij[b]);
           if constexpr (with_stress)
-            for (int a = 0; a < Dim; ++a)
-              velocity_moment[a * Dim + b] = hn::NegMulAdd(v_ij[a], weighted, velocity_moment[a * Dim + b]);
+            for (int a = 0; a < Dim; ++a) {
+              auto& moment = sum[At::velocity_moment + a * Dim + b];
+              moment = hn::NegMulAdd(v_ij[a], weighted, moment);
+            }
           for (int a = 0; a <= b; ++a) {
-            auto& moment = position_moment[a == b ? a : Dim - 1 + a + b];
+            auto& moment = sum[At::position_moment + symmetric_index<Dim>(a, b)];
             moment = hn::NegMulAdd(x_ij[a], weighted, moment);
           }
         }
       }
       if constexpr (with_heat) {
-        Simd<Real> heat_j[Fields::heat_stride];
-        load_records<Fields::n_heat_fields, Fields::heat_stride>(fields.heat.data(), row + k, heat_j);
-        auto along_i = hn::Mul(x_ij[0], hn::Set(d, heat_i[Fields::balance_at]));
-        auto along_j = hn::Mul(x_ij[0], heat_j[Fields::balance_at]);
+        Simd<Real> heat_j[padded_fields(Fields::n_heat)];
+        load_fields<Fields::heat_at, Fields::n_heat>(records, stride, index, heat_j);
+        const auto of_i = [&](int field) HWY_ATTR { return hn::Set(d, record_i[field]); };
+        const auto of_j = [&](int field) HWY_ATTR { return heat_j[field - Fields::heat_at]; };
+        auto along_i = hn::Mul(x_ij[0], of_i(Fields::balance_at));
+        auto along_j = hn::Mul(x_ij[0], of_j(Fields::balance_at));
         for (int a = 1; a < Dim; ++a) {
-          along_i = hn::MulAdd(x_ij[a], hn::Set(d, heat_i[Fields::balance_at + a]), along_i);
-          along_j = hn::MulAdd(x_ij[a], heat_j[Fields::balance_at + a], along_j);
+          along_i = hn::MulAdd(x_ij[a], of_i(Fields::balance_at + a), along_i);
+          along_j = hn::MulAdd(x_ij[a], of_j(Fields::balance_at + a), along_j);
         }
         const auto balance = hn::Min(hn::Max(hn::Add(one, hn::Sub(along_i, along_j)), least_balance), most_balance);
         const auto balanced_f = hn::Mul(volume_f, balance);
-        moment_trace = hn::NegMulAdd(balanced_f, r2, moment_trace);
+        sum[At::moment_trace] = hn::NegMulAdd(balanced_f, r2, sum[At::moment_trace]);
         const auto imbalance = hn::NegMulAdd(volume_f, along_j, volume_f);
-        for (int a = 0; a < Dim; ++a) heat_imbalance[a] = hn::MulAdd(imbalance, x_ij[a], heat_imbalance[a]);
-        const auto t_ij = hn::Sub(hn::Set(d, heat_i[0]), heat_j[0]);
-        const auto inverse_trace = hn::Add(hn::Set(d, heat_i[Fields::inverse_trace_at]), heat_j[Fields::inverse_trace_at]);
+        for (int a = 0; a < Dim; ++a) sum[At::heat_imbalance + a] = hn::MulAdd(imbalance, x_ij[a], sum[At::heat_imbalance + a]);
+        const auto t_ij = hn::Sub(of_i(Fields::heat_at), of_j(Fields::heat_at));
+        const auto inverse_trace = hn::Add(of_i(Fields::inverse_trace_at), of_j(Fields::inverse_trace_at));
         auto conducted = hn::Mul(hn::Mul(balanced_f, t_ij), inverse_trace);
         if constexpr (heat_terms == HeatTerms::mixed) {
-          const auto l_j = heat_j[Fields::conductivity_at];
-          const auto l_sum = hn::Max(hn::Add(hn::Set(d, heat_i[Fields::conductivity_at]), l_j), least_sum);
+          const auto l_j = of_j(Fields::conductivity_at);
+          const auto l_sum = hn::Max(hn::Add(of_i(Fields::conductivity_at), l_j), least_sum);
           conducted = hn::Mul(conducted, hn::Div(hn::Add(l_j, l_j), l_sum));
         }
-        heat = hn::Add(conducted, heat);
+        sum[At::heat] = hn::Add(conducted, sum[At::heat]);
       }
       if constexpr (with_xsph) {
         const auto mass_ratio = hn::MulAdd(hn::Mul(pair.volume, pair.density), inverse_density_i, pair.volume);
         const auto w = hn::Mul(mass_ratio, kernel.value(r2));
-        for (int a = 0; a < Dim; ++a) xsph[a] = hn::NegMulAdd(v_ij[a], w, xsph[a]);
+        for (int a = 0; a < Dim; ++a) sum[At::xsph + a] = hn::NegMulAdd(v_ij[a], w, sum[At::xsph + a]);
       }
-    }
+    };
+    Real total[At::n_sums];
+    sum_row(lists.padded_row(i), total, add_pairs);
 
-    RateSums<Dim, Real>& out = sums[i];
-    out.density_rate = sum_lanes<Real>(density_rate);
-    if constexpr (with_stress)
-      for (int a = 0; a < Dim * Dim; ++a) out.velocity_moment[a] = sum_lanes<Real>(velocity_moment[a]);
-    if constexpr (with_stress || with_heat)
-      for (int a = 0; a < Dim * (Dim + 1) / 2; ++a) out.position_moment[a] = sum_lanes<Real>(position_moment[a]);
+    RateSums<Dim, Real>& out = sums[i - begin];
+    out.density_rate = total[At::density_rate];
+    if constexpr (with_stress) std::copy_n(total + At::velocity_moment, Dim * Dim, out.velocity_moment.begin());
+    if constexpr (with_stress || with_heat) std::copy_n(total + At::position_moment, n_symmetric<Dim>, out.position_moment.begin());
     if constexpr (with_heat) {
       // Twice, and the half of a mean.
-      out.heat = sum_lanes<Real>(heat);
-      out.moment_trace = sum_lanes<Real>(moment_trace) / Dim;
-      for (int a = 0; a < Dim; ++a) out.heat_imbalance[a] = sum_lanes<Real>(heat_imbalance[a]);
+      out.heat = total[At::heat];
+      out.moment_trace = total[At::moment_trace] / Dim;
+      std::copy_n(total + At::heat_imbalance, Dim, out.heat_imbalance.begin());
     }
     if constexpr (with_xsph)
-      for (int a = 0; a < Dim; ++a) out.xsph[a] = sum_lanes<Real>(xsph[a]) / 2;
+      for (int a = 0; a < Dim; ++a) out.xsph[a] = total[At::xsph + a] / 2;
   }
 }
 
@@ -121,30 +121,23 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
   const Tag<Real> d;
   const double h = parameters.smoothing_length;
   const PairKernel kernel(h);
-  constexpr std::size_t lanes = pair_lanes<Real>;
   using Fields = PairFields<Dim, Real>;
-  constexpr int force_stride = Fields::force_stride(with_stress, with_hourglass);
+  const Real* records = fields.records.data();
+  constexpr int stride = Fields::stride_of(with_stress);
+  constexpr int way_at = Dim, n_sums = with_stress ? 2 * Dim : Dim;  // the force is first
   const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
   // Pi_ij = -alpha c mu_ij / (0.5 (rho_i + rho_j)), mu_ij = h v_ij.x_ij / (r^2 + 0.01 h^2) where they approach.
   const auto damping = hn::Set(d, static_cast<Real>(2.0 * parameters.artificial_viscosity * parameters.sound_speed * h));
   [[maybe_unused]] const auto hourglass = hn::Set(d, static_cast<Real>(2 * (Dim + 2)));
   const auto one = hn::Set(d, Real(1));
   for (std::size_t i = begin; i < end; ++i) {
-    Simd<Real> sum[Dim];
-    [[maybe_unused]] Simd<Real> way[Dim];
-    for (auto& s : sum) s = hn::Zero(d);
-    for (auto& s : way) s = hn::Zero(d);
-    const Real* force_i = fields.force.data() + i * force_stride;
-    const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
-    const auto density_i = hn::Set(d, motion_i[Fields::density_at]);
-    const auto inverse_density_i = hn::Set(d, 1 / motion_i[Fields::density_at]);
-    const std::int32_t* row = lists.index.data() + lists.begin[i];
-    const std::size_t n = lists.padded[i];
-    for (std::size_t k = 0; k < n; k += lanes) {
-      const Neighbours<Dim, Real> pair(motion_i, fields.motion.data(), row + k);
+    const Real* record_i = records + i * stride;
+    const auto density_i = hn::Set(d, record_i[Fields::density_at]);
+    const auto inverse_density_i = hn::Set(d, 1 / record_i[Fields::density_at]);
+    const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const Neighbours<Dim, Real> pair(record_i, records, stride, index);
       const auto &x_ij = pair.x_ij, &v_ij = pair.v_ij;
-      Simd<Real> force[force_stride];
-      load_records<Fields::n_force_fields(with_stress, with_hourglass), force_stride>(fields.force.data(), row + k, force);
+      const auto specific_pressure_j = load_field<Fields::specific_pressure_at>(records, stride, index);
       const auto r2 = dot<Dim, Real>(x_ij, x_ij);
       const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(r2));
       const auto v_x = dot<Dim, Real>(v_ij, x_ij);
@@ -153,22 +146,25 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
       const auto density_sum = hn::Add(density_i, pair.density);
       const auto inverse = hn::Div(one, hn::Mul(hn::Add(r2, soft), density_sum));
       const auto pi = hn::Mul(hn::Mul(damping, approach), inverse);
-      const auto pressure = hn::Add(hn::Set(d, force_i[0]), force[0]);
+      const auto pressure = hn::Add(hn::Set(d, record_i[Fields::specific_pressure_at]), specific_pressure_j);
       // -m_j (pressure + Pi_ij) F, with Pi_ij = -pi and m_j = V_j rho_j.
       const auto isotropic = hn::Mul(hn::Mul(pair.density, volume_f), hn::Sub(pi, pressure));
       for (int a = 0; a < Dim; ++a) sum[a] = hn::MulAdd(isotropic, x_ij[a], sum[a]);
       if constexpr (with_stress) {
+        constexpr int n_stress = Fields::n_stress(with_hourglass);
+        Simd<Real> stress_j[padded_fields(n_stress)];
+        load_fields<Fields::stress_at, n_stress>(records, stride, index, stress_j);
         // m_j/(rho_i rho_j) = V_j/rho_i.
         const auto scale = hn::Mul(volume_f, inverse_density_i);
         for (int a = 0; a < Dim; ++a) {
-          auto traction = hn::Mul(force[1 + a * Dim], x_ij[0]);
-          for (int b = 1; b < Dim; ++b) traction = hn::MulAdd(force[1 + a * Dim + b], x_ij[b], traction);
+          auto traction = hn::Mul(stress_j[a * Dim], x_ij[0]);
+          for (int b = 1; b < Dim; ++b) traction = hn::MulAdd(stress_j[a * Dim + b], x_ij[b], traction);
           sum[a] = hn::MulAdd(scale, traction, sum[a]);
           // The particle's own stress is the same in all of its pairs.
-          way[a] = hn::MulAdd(scale, x_ij[a], way[a]);
+          sum[way_at + a] = hn::MulAdd(scale, x_ij[a], sum[way_at + a]);
         }
         if constexpr (with_hourglass) {
-          const auto pair_sum = [&](int field) HWY_ATTR { return hn::Add(hn::Set(d, force_i[field]), force[field]); };
+          const auto pair_sum = [&](int field) HWY_ATTR { return hn::Add(hn::Set(d, record_i[field]), stress_j[field - Fields::stress_at]); };
           auto unseen = hn::Mul(pair_sum(Fields::hourglass_at), v_x);
           for (int m = 0; m < n_symmetric<Dim>; ++m) {
             const auto [a, b] = symmetric_entry<Dim>(m);
@@ -178,13 +174,14 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
           for (int a = 0; a < Dim; ++a) sum[a] = hn::MulAdd(weight, x_ij[a], sum[a]);
         }
       }
+    };
+    Real total[n_sums];
+    sum_row(lists.padded_row(i), total, add_pairs);
+    for (int a = 0; a < Dim; ++a) {
+      acceleration[i - begin][a] = total[a];
+      if constexpr (with_stress)
+        for (int b = 0; b < Dim; ++b) acceleration[i - begin][a] += record_i[Fields::stress_at + a * Dim + b] * total[way_at + b];
     }
-    for (int a = 0; a < Dim; ++a) acceleration[i][a] = sum_lanes<Real>(sum[a]);
-    if constexpr (with_stress)
-      for (int b = 0; b < Dim; ++b) {
-        const Real way_b = sum_lanes<Real>(way[b]);
-        for (int a = 0; a < Dim; ++a) acceleration[i][a] += force_i[1 + a * Dim + b] * way_b;
-      }
   }
 }
 
@@ -194,39 +191,35 @@ void gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& l
   const Tag<Real> d;
   const double h = parameters.smoothing_length;
   const PairKernel kernel(h);
-  constexpr std::size_t lanes = pair_lanes<Real>;
   using Fields = PairFields<Dim, Real>;
-  constexpr int force_stride = Fields::force_stride(false);
+  const Real* records = fields.records.data();
+  constexpr int stride = Fields::stride_of(false);
   const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
   const auto alpha = hn::Set(d, static_cast<Real>(parameters.artificial_viscosity));
   const auto two_beta = hn::Set(d, static_cast<Real>(2.0 * parameters.quadratic_artificial_viscosity));
   for (std::size_t i = begin; i < end; ++i) {
-    Simd<Real> sum[Dim];
-    for (auto& s : sum) s = hn::Zero(d);
-    auto energy = hn::Zero(d);
-    const Real* force_i = fields.force.data() + i * force_stride;
-    const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
-    const std::int32_t* row = lists.index.data() + lists.begin[i];
-    const std::size_t n = lists.padded[i];
-    for (std::size_t k = 0; k < n; k += lanes) {
-      const Neighbours<Dim, Real> pair(motion_i, fields.motion.data(), row + k);
-      Simd<Real> force[force_stride];
-      load_records<2, force_stride>(fields.force.data(), row + k, force);
+    const Real* record_i = records + i * stride;
+    const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const Neighbours<Dim, Real> pair(record_i, records, stride, index);
+      const auto specific_pressure_j = load_field<Fields::specific_pressure_at>(records, stride, index);
+      const auto sound_speed_j = load_field<Fields::sound_speed_at>(records, stride, index);
       const auto r2 = dot<Dim, Real>(pair.x_ij, pair.x_ij);
       const auto v_x = dot<Dim, Real>(pair.v_ij, pair.x_ij);
       // Twice c_ij and twice rho_ij: the halves cancel but for beta's.
       const auto mu = hn::Div(hn::Mul(hn::Set(d, static_cast<Real>(h)), hn::Min(v_x, hn::Zero(d))), hn::Add(r2, soft));
-      const auto sound = hn::Add(hn::Set(d, force_i[1]), force[1]);
-      const auto density = hn::Add(hn::Set(d, motion_i[Fields::density_at]), pair.density);
+      const auto sound = hn::Add(hn::Set(d, record_i[Fields::sound_speed_at]), sound_speed_j);
+      const auto density = hn::Add(hn::Set(d, record_i[Fields::density_at]), pair.density);
       const auto pi = hn::Div(hn::Mul(mu, hn::MulSub(two_beta, mu, hn::Mul(alpha, sound))), density);
-      const auto pressure = hn::Add(hn::Add(hn::Set(d, force_i[0]), force[0]), pi);
+      const auto pressure = hn::Add(hn::Add(hn::Set(d, record_i[Fields::specific_pressure_at]), specific_pressure_j), pi);
       const auto mass_f = hn::Mul(hn::Mul(pair.density, pair.volume), kernel.gradient_over_r(r2));
       const auto weight = hn::Mul(mass_f, pressure);
       for (int a = 0; a < Dim; ++a) sum[a] = hn::NegMulAdd(weight, pair.x_ij[a], sum[a]);
-      energy = hn::MulAdd(weight, v_x, energy);
-    }
-    for (int a = 0; a < Dim; ++a) acceleration[i][a] = sum_lanes<Real>(sum[a]);
-    energy_rate[i] = Real(0.5) * sum_lanes<Real>(energy);
+      sum[Dim] = hn::MulAdd(weight, v_x, sum[Dim]);
+    };
+    Real total[Dim + 1];  // the force and the energy
+    sum_row(lists.padded_row(i), total, add_pairs);
+    std::copy_n(total, Dim, acceleration[i - begin].begin());
+    energy_rate[i - begin] = Real(0.5) * total[Dim];
   }
 }
 
@@ -235,25 +228,24 @@ void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lis
                   std::size_t end, DensitySums<Real>* sums) {
   const Tag<Real> d;
   const PairKernel kernel(h);
-  constexpr std::size_t lanes = pair_lanes<Real>;
   using Fields = PairFields<Dim, Real>;
   for (std::size_t i = begin; i < end; ++i) {
-    auto mass = hn::Zero(d);
-    auto volume = hn::Zero(d);
-    const Real* motion_i = fields.motion.data() + i * Fields::motion_stride;
-    const std::int32_t* row = lists.index.data() + lists.begin[i];
-    const std::size_t n = lists.count[i];
-    for (std::size_t k = 0; k < n; k += lanes) {
-      const Neighbours<Dim, Real> pair(motion_i, fields.motion.data(), row + k);
+    const Real* record_i = fields.record(i);
+    const std::int32_t* row_end = lists.begin[i] + lists.count[i];
+    const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const Neighbours<Dim, Real> pair(record_i, fields.records.data(), fields.stride, index);
       // The padding is the particle itself, whose W is not nothing: it counts once, below.
-      const auto w = hn::IfThenElseZero(hn::FirstN(d, n - k), kernel.value(dot<Dim, Real>(pair.x_ij, pair.x_ij)));
+      const auto n_left = static_cast<std::size_t>(std::max<std::ptrdiff_t>(row_end - index, 0));
+      const auto w = hn::IfThenElseZero(hn::FirstN(d, n_left), kernel.value(dot<Dim, Real>(pair.x_ij, pair.x_ij)));
       const auto volume_w = hn::Mul(pair.volume, w);
-      mass = hn::MulAdd(pair.density, volume_w, mass);
-      volume = hn::Add(volume, volume_w);
-    }
-    const Real self = motion_i[Fields::volume_at] * hn::GetLane(kernel.value(hn::Zero(d)));
-    sums[i].mass = sum_lanes<Real>(mass) + motion_i[Fields::density_at] * self;
-    sums[i].volume = sum_lanes<Real>(volume) + self;
+      sum[0] = hn::MulAdd(pair.density, volume_w, sum[0]);
+      sum[1] = hn::Add(volume_w, sum[1]);
+    };
+    Real total[2];
+    sum_row(lists.padded_row(i), total, add_pairs);
+    const Real self = record_i[Fields::volume_at] * hn::GetLane(kernel.value(hn::Zero(d)));
+    sums[i - begin].mass = total[0] + record_i[Fields::density_at] * self;
+    sums[i - begin].volume = total[1] + self;
   }
 }
 

@@ -7,6 +7,8 @@
 #include "core/sph/kernel.h"
 #include "core/sph/neighbours.h"
 
+#include <tbb/cache_aligned_allocator.h>
+
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -32,36 +34,34 @@ struct PairTerms {
   bool has_heat() const { return heat != HeatTerms::none; }
 };
 
-/// Fields of a record, padded to whole groups of four: a vector of neighbours is loaded group by group and transposed, which costs
-/// a fraction of gathering field by field (docs/decisions/0006-pair-loops.md).
-constexpr int padded_record(int n_fields) { return (n_fields + 3) / 4 * 4; }
+/// Fields padded to whole groups of four: a vector of neighbours is loaded group by group and transposed, which costs a fraction of
+/// gathering field by field (docs/decisions/0006-pair-loops.md).
+constexpr int padded_fields(int n_fields) { return (n_fields + 3) / 4 * 4; }
 
-/// The particles' fields as the pair loops read them, in the order of the neighbour lists. Positions are relative to an origin near
-/// the particles, so that Real may be float. Arrays that PairTerms leaves out stay empty.
+/// The particles as the pair loops read them: a record each of one or two cache lines (in single precision), in the order of the neighbour
+/// lists. Positions are relative to an origin near the particles, so that Real may be float. Fields of unused terms are not read.
 template <int Dim, typename Real>
 struct PairFields {
-  /// Position [m], velocity [m/s], volume V [m^Dim], density rho [kg/m^Dim].
-  static constexpr int motion_stride = padded_record(2 * Dim + 2);
+  /// Position [m] is first, then velocity [m/s], volume V [m^Dim], density rho [kg/m^Dim].
+  static constexpr int n_motion = 2 * Dim + 2;
   static constexpr int velocity_at = Dim, volume_at = 2 * Dim, density_at = 2 * Dim + 1;
-  /// p/rho^2, then S L row-major [Pa] where the scene has a stress, or the sound speed [m/s] of an ideal gas. With hourglass control,
-  /// then eta_h/2 [Pa s] and eta_h E/2 [Pa], E the symmetric velocity gradient, packed, its off-diagonal entries doubled.
-  static constexpr int n_force_fields(bool with_stress, bool with_hourglass) {
-    return 1 + (with_stress ? Dim * Dim : 0) + (with_hourglass ? 1 + Dim * (Dim + 1) / 2 : 0);
-  }
-  static constexpr int force_stride(bool with_stress, bool with_hourglass = false) {
-    return padded_record(n_force_fields(with_stress, with_hourglass));
-  }
-  static constexpr int hourglass_at = 1 + Dim * Dim;
-  static constexpr int force_stride(const PairTerms& terms) { return force_stride(terms.stress, terms.hourglass); }
-  /// Temperature above a reference [K], conductivity over c_p relative to the scene's largest [-], and of the pass
-  /// before 1/theta, theta the moment trace [-], and the balance lambda [1/m] (core/sph/heat_balance.h).
-  static constexpr int n_heat_fields = 3 + Dim, heat_stride = padded_record(n_heat_fields);
-  static constexpr int conductivity_at = 1, inverse_trace_at = 2, balance_at = 3;
+  /// Temperature above a reference [K], conductivity over c_p relative to the scene's largest [-], and of the pass before 1/theta, theta the
+  /// moment trace [-], and the balance lambda [1/m] (core/sph/heat_balance.h).
+  static constexpr int heat_at = 8, n_heat = 3 + Dim;
+  static constexpr int conductivity_at = heat_at + 1, inverse_trace_at = heat_at + 2, balance_at = heat_at + 3;
+  /// p/rho^2 [Pa m^(2 Dim)/kg^2], and p [Pa] of a liquid or the sound speed [m/s] of an ideal gas.
+  static constexpr int specific_pressure_at = 14, pressure_at = 15, sound_speed_at = 15;
+  /// S L row-major [Pa]. With hourglass control, then eta_h/2 [Pa s] and eta_h E/2 [Pa], E the symmetric velocity gradient, packed, its
+  /// off-diagonal entries doubled.
+  static constexpr int stress_at = 16, hourglass_at = stress_at + Dim * Dim;
+  static constexpr int n_stress(bool with_hourglass) { return Dim * Dim + (with_hourglass ? 1 + Dim * (Dim + 1) / 2 : 0); }
+  static constexpr int stride_of(bool with_stress) { return with_stress ? stress_at + padded_fields(n_stress(true)) : stress_at; }
 
-  std::vector<Real> motion;       ///< n records of motion_stride
-  std::vector<Real> force;        ///< n records of force_stride
-  std::vector<Real> heat;         ///< n records of heat_stride, of scenes with heat
-  std::vector<Real> pressure;     ///< [Pa], for core/sph/pressure_sums.h
+  int stride = stride_of(false);                               ///< of a scene
+  std::vector<Real, tbb::cache_aligned_allocator<Real>> records;  ///< n of `stride`
+
+  Real* record(std::size_t i) { return records.data() + i * static_cast<std::size_t>(stride); }
+  const Real* record(std::size_t i) const { return records.data() + i * static_cast<std::size_t>(stride); }
 };
 
 /// Sums of the first pass for one particle.
@@ -81,12 +81,12 @@ struct RateSums {
   std::array<Real, Dim> xsph;                   ///< sum m_j (1/rho_i + 1/rho_j)/2 (v_j - v_i) W_ij  [P 6-16, whose 2/(rho_i + rho_j) takes a division a pair and differs by (rho_i - rho_j)^2]
 };
 
-/// Neighbours in one vector: rows of the neighbour lists are padded to a multiple of it. The same on every machine.
+/// Neighbours in the longest vector: rows of the neighbour lists are padded to a multiple of it, on every machine.
 template <typename Real>
-inline constexpr int pair_lanes = 32 / static_cast<int>(sizeof(Real));
+inline constexpr int pair_lanes = 64 / static_cast<int>(sizeof(Real));
 
 /// First pass for particles [begin, end): rates of density, velocity gradient, heat and XSPH from `fields.velocity`.
-/// `smoothing_length` in metres. `sums` has one entry per particle.
+/// `smoothing_length` in metres. `sums` has one entry for each of them.
 template <int Dim, typename Real>
 void compute_rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,
                        double smoothing_length, std::size_t begin, std::size_t end, RateSums<Dim, Real>* sums);
@@ -99,7 +99,7 @@ struct DensitySums {
 };
 
 /// The pass before the others where density is a sum: for particles [begin, end), from positions, volumes and densities in
-/// `fields.motion`. `sums` has one entry per particle.
+/// `fields`. `sums` has one entry for each of them.
 template <int Dim, typename Real>
 void compute_density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, KernelType kernel, double smoothing_length,
                           std::size_t begin, std::size_t end, DensitySums<Real>* sums);
@@ -111,7 +111,7 @@ struct ForceParameters {
   double sound_speed = 0.0;           ///< c [m/s]
 };
 
-/// Second pass for particles [begin, end): the accelerations [m/s^2]
+/// Second pass for particles [begin, end): the accelerations [m/s^2], one entry for each of them,
 ///   - sum m_j (p_i/rho_i^2 + p_j/rho_j^2 + Pi_ij) grad_w_ij + sum m_j/(rho_i rho_j) (S_i L_i + S_j L_j) grad_w_ij
 /// of [P 4-38, 4-46, 6-14 corrected: Pi_ij already divides by a density], with Pi_ij of [P 6-15]. L is the inverse of the position
 /// moment: with it the force is the adjoint of the corrected gradient, so it does no work on a rigid motion and conserves
@@ -135,7 +135,7 @@ struct GasForceParameters {
 
 /// Second pass of an ideal gas for particles [begin, end): the accelerations - sum m_j (p_i/rho_i^2 + p_j/rho_j^2 + Pi_ij) grad_w_ij
 /// [m/s^2], and 1/2 sum m_j (p_i/rho_i^2 + p_j/rho_j^2 + Pi_ij) v_ij.grad_w_ij, the rate of specific internal energy [W/kg], which is
-/// what kinetic energy loses  [S 4.47-4.48].
+/// what kinetic energy loses  [S 4.47-4.48]; one entry for each of them.
 template <int Dim, typename Real>
 void compute_gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, KernelType kernel,
                             const GasForceParameters& parameters, std::size_t begin, std::size_t end,

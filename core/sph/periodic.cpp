@@ -86,22 +86,20 @@ PeriodicImages<Dim> build_periodic_neighbour_lists(const Box<Dim>& period, std::
   NeighbourLists of_all;
   build_neighbour_lists<Dim>(sorted, radius, radius, row_multiple, of_all);
 
+  lists.row_multiple = row_multiple;
   lists.begin.resize(n);
   lists.count.resize(n);
-  lists.padded.resize(n);
-  std::int64_t total = 0;
+  lists.blocks.assign(1, {});
+  std::vector<std::int32_t>& index = lists.blocks.front();
+  std::size_t total = 0;
+  for (std::size_t i = 0; i < n; ++i) total += of_all.padded_row(static_cast<std::size_t>(sorted_from[i])).size();
+  index.reserve(total);  // rows do not move from here on
   for (std::size_t i = 0; i < n; ++i) {
-    lists.begin[i] = total;
-    lists.count[i] = of_all.count[sorted_from[i]];
-    lists.padded[i] = of_all.padded[sorted_from[i]];
-    total += lists.padded[i];
+    const auto from = static_cast<std::size_t>(sorted_from[i]);
+    lists.begin[i] = index.data() + index.size();
+    lists.count[i] = of_all.count[from];
+    for (const std::int32_t k : of_all.padded_row(from)) index.push_back(order[k]);
   }
-  lists.index.resize(total);
-  parallel_for_each(n, [&](std::size_t i) {
-    const std::int32_t* from = of_all.index.data() + of_all.begin[sorted_from[i]];
-    std::transform(from, from + lists.padded[i], lists.index.data() + lists.begin[i],
-                   [&](std::int32_t k) { return order[k]; });
-  });
   return images;
 }
 

@@ -7,7 +7,10 @@
 #endif
 
 #include "core/sph/pair_records-inl.h"
+#include "core/sph/particles.h"
 #include "core/sph/pressure_sums.h"
+
+#include <algorithm>
 
 HWY_BEFORE_NAMESPACE();
 namespace smelt {
@@ -18,31 +21,29 @@ void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const Neighbour
                             std::size_t end, PressureGradientSums<Dim, Real>* sums) {
   const Tag<Real> d;
   const PairKernel kernel(h);
-  constexpr std::size_t lanes = pair_lanes<Real>;
-  constexpr int n_moments = Dim * (Dim + 1) / 2;
   using Fields = PairFields<Dim, Real>;
   for (std::size_t i = begin; i < end; ++i) {
-    Simd<Real> gradient[Dim], moment[n_moments];
-    for (auto& g : gradient) g = hn::Zero(d);
-    for (auto& m : moment) m = hn::Zero(d);
-    const std::int32_t* row = lists.index.data() + lists.begin[i];
-    const std::size_t n = lists.padded[i];
-    for (std::size_t k = 0; k < n; k += lanes) {
-      const Neighbours<Dim, Real> pair(fields.motion.data() + i * Fields::motion_stride, fields.motion.data(), row + k);
+    const Real* record_i = fields.record(i);
+    // The gradient is first, then the moment.
+    const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const Neighbours<Dim, Real> pair(record_i, fields.records.data(), fields.stride, index);
       const auto& x_ij = pair.x_ij;
       const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(dot<Dim, Real>(x_ij, x_ij)));
-      const auto p_ji = hn::Sub(load_scalar(fields.pressure, row + k), hn::Set(d, fields.pressure[i]));
+      const auto p_j = load_field<Fields::pressure_at>(fields.records.data(), fields.stride, index);
+      const auto p_ji = hn::Sub(p_j, hn::Set(d, record_i[Fields::pressure_at]));
       for (int b = 0; b < Dim; ++b) {
         const auto weighted = hn::Mul(volume_f, x_ij[b]);
-        gradient[b] = hn::MulAdd(p_ji, weighted, gradient[b]);
+        sum[b] = hn::MulAdd(p_ji, weighted, sum[b]);
         for (int a = 0; a <= b; ++a) {
-          auto& m = moment[a == b ? a : Dim - 1 + a + b];
-          m = hn::NegMulAdd(x_ij[a], weighted, m);
+          auto& moment = sum[Dim + symmetric_index<Dim>(a, b)];
+          moment = hn::NegMulAdd(x_ij[a], weighted, moment);
         }
       }
-    }
-    for (int a = 0; a < Dim; ++a) sums[i].gradient[a] = sum_lanes<Real>(gradient[a]);
-    for (int a = 0; a < n_moments; ++a) sums[i].moment[a] = sum_lanes<Real>(moment[a]);
+    };
+    Real total[Dim + n_symmetric<Dim>];
+    sum_row(lists.padded_row(i), total, add_pairs);
+    std::copy_n(total, Dim, sums[i - begin].gradient.begin());
+    std::copy_n(total + Dim, n_symmetric<Dim>, sums[i - begin].moment.begin());
   }
 }
 
@@ -51,30 +52,30 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
                              double h, std::size_t begin, std::size_t end, Real* sums) {
   const Tag<Real> d;
   const PairKernel kernel(h);
-  constexpr std::size_t lanes = pair_lanes<Real>;
   constexpr int stride = gradient_stride<Dim>;
   using Fields = PairFields<Dim, Real>;
   const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
   const auto half = hn::Set(d, Real(0.5));
   for (std::size_t i = begin; i < end; ++i) {
-    auto sum = hn::Zero(d);
+    const Real* record_i = fields.record(i);
     const Real* gradient_i = gradients.data() + i * stride;
-    const std::int32_t* row = lists.index.data() + lists.begin[i];
-    const std::size_t n = lists.padded[i];
-    for (std::size_t k = 0; k < n; k += lanes) {
-      const Neighbours<Dim, Real> pair(fields.motion.data() + i * Fields::motion_stride, fields.motion.data(), row + k);
+    const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const Neighbours<Dim, Real> pair(record_i, fields.records.data(), fields.stride, index);
       const auto r2 = dot<Dim, Real>(pair.x_ij, pair.x_ij);
-      Simd<Real> gradient_j[padded_record(Dim)];
-      load_records<Dim, stride>(gradients.data(), row + k, gradient_j);
+      Simd<Real> gradient_j[padded_fields(Dim)];
+      load_fields<0, Dim>(gradients.data(), stride, index, gradient_j);
       Simd<Real> gradient[Dim];
       for (int a = 0; a < Dim; ++a) gradient[a] = hn::Add(hn::Set(d, gradient_i[a]), gradient_j[a]);
-      const auto p_ji = hn::Sub(load_scalar(fields.pressure, row + k), hn::Set(d, fields.pressure[i]));
+      const auto p_j = load_field<Fields::pressure_at>(fields.records.data(), fields.stride, index);
+      const auto p_ji = hn::Sub(p_j, hn::Set(d, record_i[Fields::pressure_at]));
       const auto unexplained = hn::MulAdd(half, dot<Dim, Real>(gradient, pair.x_ij), p_ji);
       const auto weight = hn::Div(hn::Mul(hn::Mul(pair.volume, kernel.gradient_over_r(r2)), r2), hn::Add(r2, soft));
       // F is negative: the sign of a Laplacian.
-      sum = hn::NegMulAdd(weight, unexplained, sum);
-    }
-    sums[i] = 2 * sum_lanes<Real>(sum);
+      sum[0] = hn::NegMulAdd(weight, unexplained, sum[0]);
+    };
+    Real total[1];
+    sum_row(lists.padded_row(i), total, add_pairs);
+    sums[i - begin] = 2 * total[0];
   }
 }
 

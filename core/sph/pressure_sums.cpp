@@ -1,5 +1,6 @@
 // Compiled once for every instruction set, as pair_sums.cpp is.
-#define HWY_DISABLED_TARGETS (HWY_AVX3 | HWY_AVX3_DL | HWY_SSE4)
+#define HWY_BASELINE_TARGETS HWY_AVX2
+#define HWY_DISABLED_TARGETS HWY_AVX3_DL
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/sph/pressure_sums.cpp"
 #include <hwy/foreach_target.h>  // must come before highway.h

@@ -13,7 +13,7 @@ struct PressureGradientSums {
   std::array<Real, Dim*(Dim + 1) / 2> moment;    ///< sum V_j (x_j - x_i) (x) grad_w_ij, packed
 };
 
-/// For particles [begin, end), from `fields.motion` and `fields.pressure`. `sums` has one entry per particle.
+/// For particles [begin, end), from motion and pressure in `fields`. `sums` has one entry for each of them.
 template <int Dim, typename Real>
 void compute_pressure_gradient_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, KernelType kernel,
                                     double smoothing_length, std::size_t begin, std::size_t end,
@@ -26,7 +26,7 @@ inline constexpr int gradient_stride = Dim == 3 ? 4 : Dim;
 /// 2 sum V_j [p_j - p_i + (g_i + g_j)/2 . x_ij] x_ij.grad_w_ij / (r^2 + 0.01 h^2) [Pa/m^2], with the sign of a Laplacian: a
 /// diffusion of pressure (and so density) on what its gradients g [Pa/m] do not explain, so that a linear field, such as
 /// water's at rest, is left alone  [Antuono 2010]. `gradients`: one of gradient_stride numbers per record of `fields`. `sums`: one
-/// entry per particle.
+/// entry for each of them.
 template <int Dim, typename Real>
 void compute_pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vector<Real>& gradients, const NeighbourLists& lists,
                                      KernelType kernel, double smoothing_length, std::size_t begin, std::size_t end, Real* sums);

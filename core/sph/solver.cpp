@@ -94,6 +94,7 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
     walls_.emplace(WallKernel<Dim>(parameters_.smoothing_length, parameters_.kernel),
                    spacing_,
                    Colliders<Dim>::wall_guard * particle_radius<Dim>(parameters_.particle_volume));
+  fields_.stride = PairFields<Dim, Real>::stride_of(terms_.pair.stress);
   open_boundaries();
   resize_derived();
 }
@@ -103,17 +104,12 @@ template <int Dim, typename Real>
 void Solver<Dim, Real>::resize_derived() {
   const std::size_t n = particles_.size();
   acceleration_.resize(n, Vec<Dim>::Zero());
-  force_sums_.resize(n);
   rates_.resize(n);
   if (terms_.gas) energy_rate_.resize(n);
   if (terms_.pair.has_heat()) heat_balance_.resize(n);
   if (terms_.pair.xsph) transport_.resize(n, Vec<Dim>::Zero());
   if (terms_.pair.xsph) xsph_.resize(n, Vec<Dim>::Zero());
-  if (walls_ || (terms_.diffusion && terms_.pair.stress)) {
-    pressure_sums_.resize(n);
-    pressure_gradient_.resize(n, Vec<Dim>::Zero());
-  }
-  if (terms_.diffusion) diffusion_sums_.resize(n);
+  if (walls_ || (terms_.diffusion && terms_.pair.stress)) pressure_gradient_.resize(n, Vec<Dim>::Zero());
   if (!colliders_.empty()) clearance_.resize(n, 0.0);
   if (terms_.exchange) free_surface_area_.resize(n, 0.0);
 }
@@ -244,7 +240,7 @@ void Solver<Dim, Real>::set_summed_densities(bool normalise) {
   const std::size_t n = particles_.size();
   density_sums_.resize(n);
   parallel_blocks(n, [&](std::size_t begin, std::size_t end) {
-    compute_density_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end, density_sums_.data());
+    compute_density_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end, density_sums_.data() + begin);
   });
   parallel_for_each(n, [&](std::size_t i) {
     const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr;
@@ -252,11 +248,11 @@ void Solver<Dim, Real>::set_summed_densities(bool normalise) {
     // Of the kernel in the fluid: the solid is taken to hold what the fluid does.
     const double rho = density_sums_[i].mass / (normalise ? static_cast<double>(density_sums_[i].volume) : 1.0 - solid);
     particles_.density[i] = rho;
-    Real* record = fields_.motion.data() + i * Fields::motion_stride;
+    Real* record = fields_.record(i);
     record[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
     record[Fields::density_at] = static_cast<Real>(rho);
   });
-  copy_motion_to_images();
+  copy_records_to_images();
 }
 
 template <int Dim, typename Real>
@@ -265,7 +261,7 @@ void Solver<Dim, Real>::evaluate_rates() {
   if (walls_ || terms_.diffusion) evaluate_pressure_gradients();
   end_stage(StepStage::wall_rates);
   parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
-    compute_rate_sums<Dim, Real>(fields_, lists_, terms_.pair, parameters_.smoothing_length, begin, end, rates_.data());
+    compute_rate_sums<Dim, Real>(fields_, lists_, terms_.pair, parameters_.smoothing_length, begin, end, rates_.data() + begin);
   });
   if (terms_.diffusion) apply_density_diffusion();
   end_stage(StepStage::rates);
@@ -278,10 +274,10 @@ void Solver<Dim, Real>::evaluate_rates() {
 template <int Dim, typename Real>
 void Solver<Dim, Real>::evaluate_pressure_gradients() {
   const auto evaluate = [&](std::size_t begin, std::size_t end) {
-    compute_pressure_gradient_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end,
-                                              pressure_sums_.data());
+    std::array<PressureGradientSums<Dim, Real>, block_size> sums;
+    compute_pressure_gradient_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end, sums.data());
     for (std::size_t i = begin; i < end; ++i)
-      pressure_gradient_[i] = compute_pressure_gradient<Dim, Real>(pressure_sums_[i], walls_ ? walls_->of(i) : nullptr,
+      pressure_gradient_[i] = compute_pressure_gradient<Dim, Real>(sums[i - begin], walls_ ? walls_->of(i) : nullptr,
                                                                    particles_.density[i], parameters_.gravity);
   };
   if (terms_.diffusion && terms_.pair.stress)
@@ -299,9 +295,10 @@ void Solver<Dim, Real>::apply_density_diffusion() {
   pack_gradients();
   const double strength = parameters_.density_diffusion * parameters_.smoothing_length / parameters_.sound_speed;
   parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
+    std::array<Real, block_size> sums;
     compute_pressure_diffusion_sums<Dim, Real>(fields_, packed_gradient_, lists_, parameters_.kernel, parameters_.smoothing_length, begin,
-                                               end, diffusion_sums_.data());
-    for (std::size_t i = begin; i < end; ++i) rates_[i].density_rate += static_cast<Real>(strength * diffusion_sums_[i]);
+                                               end, sums.data());
+    for (std::size_t i = begin; i < end; ++i) rates_[i].density_rate += static_cast<Real>(strength * sums[i - begin]);
   });
 }
 
@@ -310,7 +307,7 @@ void Solver<Dim, Real>::apply_wall_rates(const WallNeighbour<Dim>& wall) {
   using Fields = PairFields<Dim, Real>;
   const auto i = static_cast<std::size_t>(wall.particle);
   Vec<Dim> velocity;  // the one that the pair sums were made with
-  for (int a = 0; a < Dim; ++a) velocity[a] = fields_.motion[i * Fields::motion_stride + Fields::velocity_at + a];
+  for (int a = 0; a < Dim; ++a) velocity[a] = fields_.record(i)[Fields::velocity_at + a];
   accumulate_wall_rates<Dim, Real>(wall, colliders_, terms_.pair, velocity, particles_.density[i], material(i).density,
                                    terms_.pair.has_heat() ? particles_.temperature[i] : 0.0,
                                    terms_.pair.has_heat() ? heat_balance_[i].moment_trace : 1.0, rates_[i]);
@@ -319,7 +316,6 @@ void Solver<Dim, Real>::apply_wall_rates(const WallNeighbour<Dim>& wall) {
 /// With dt = 0 nothing advances, but the stress of a law without memory and the XSPH correction follow from the state.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::integrate_rates(double dt) {
-  fields_.force.resize((particles_.size() + images_.size()) * PairFields<Dim, Real>::force_stride(terms_.pair));
   match_driven_densities();
   parallel_for_each(particles_.size(), [&](std::size_t i) {
     const RateSums<Dim, Real>& rate = rates_[i];
@@ -335,7 +331,7 @@ void Solver<Dim, Real>::integrate_rates(double dt) {
     else
       pack_forces(i, corrected_stress);
   });
-  copy_forces_to_images();
+  copy_records_to_images();
 }
 
 /// Advances the extra stress S and returns S L for the force pass.
@@ -371,12 +367,13 @@ void Solver<Dim, Real>::evaluate_forces() {
   const ForceParameters force{parameters_.smoothing_length, parameters_.artificial_viscosity, parameters_.sound_speed};
   const GasForceParameters gas{parameters_.smoothing_length, parameters_.artificial_viscosity, parameters_.quadratic_artificial_viscosity};
   parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
+    std::array<std::array<Real, Dim>, block_size> sums;
     if (terms_.gas)
-      compute_gas_force_sums<Dim, Real>(fields_, lists_, terms_.pair.kernel, gas, begin, end, force_sums_.data(), energy_rate_.data());
+      compute_gas_force_sums<Dim, Real>(fields_, lists_, terms_.pair.kernel, gas, begin, end, sums.data(), energy_rate_.data() + begin);
     else
-      compute_force_sums<Dim, Real>(fields_, lists_, terms_.pair, force, begin, end, force_sums_.data());
+      compute_force_sums<Dim, Real>(fields_, lists_, terms_.pair, force, begin, end, sums.data());
     for (std::size_t i = begin; i < end; ++i)
-      for (int a = 0; a < Dim; ++a) acceleration_[i][a] = force_sums_[i][a] + parameters_.gravity[a];
+      for (int a = 0; a < Dim; ++a) acceleration_[i][a] = sums[i - begin][a] + parameters_.gravity[a];
   });
   end_stage(StepStage::forces);
   if (walls_) {
@@ -400,7 +397,7 @@ void Solver<Dim, Real>::apply_wall_forces(std::size_t slot) {
   Mat<Dim> corrected_stress = Mat<Dim>::Zero();
   if (terms_.pair.stress)
     for (int a = 0; a < Dim; ++a)
-      for (int b = 0; b < Dim; ++b) corrected_stress(a, b) = force_record(i)[1 + a * Dim + b];
+      for (int b = 0; b < Dim; ++b) corrected_stress(a, b) = fields_.record(i)[PairFields<Dim, Real>::stress_at + a * Dim + b];
   for (const WallContact<Dim>& contact : wall.contacts) {
     const PlacedObstacle<Dim>& placed = colliders_.placed()[contact.obstacle];
     const Vec<Dim> a = contact_acceleration<Dim>(contact, placed.obstacle.response, particles_.density[i], pressure(i),

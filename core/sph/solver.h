@@ -158,8 +158,7 @@ class Solver {
   void pack_motion(const std::vector<Vec<Dim>>& velocity);
   void pack_gas(std::size_t i, double dt);
   void pack_gradients();
-  void copy_motion_to_images();
-  void copy_forces_to_images();
+  void copy_records_to_images();
   void sum_densities();
   void set_summed_densities(bool normalise);
   void evaluate_rates();
@@ -168,7 +167,6 @@ class Solver {
   void apply_wall_rates(const WallNeighbour<Dim>& wall);
   void apply_wall_forces(std::size_t slot);
   void sum_body_loads();
-  Real* force_record(std::size_t i) { return fields_.force.data() + i * PairFields<Dim, Real>::force_stride(terms_.pair); }
   double pressure(std::size_t i) const;
   void set_up_heat();
   void find_free_surface();
@@ -224,16 +222,13 @@ class Solver {
   std::vector<double> clearance_;  ///< at least so far is each particle from all obstacles [m]; empty without any
   std::vector<DensitySums<Real>> density_sums_;  ///< empty where density follows the continuity equation
   std::optional<Walls<Dim>> walls_;  ///< absent where no obstacle is a wall
-  std::vector<PressureGradientSums<Dim, Real>> pressure_sums_;  ///< like the next two, empty without walls and density diffusion
-  std::vector<Vec<Dim>> pressure_gradient_;                     ///< [Pa/m]
+  std::vector<Vec<Dim>> pressure_gradient_;  ///< [Pa/m]; like the next, empty without walls and density diffusion
   std::vector<Real> packed_gradient_;                           ///< the same for the pair loops
-  std::vector<Real> diffusion_sums_;
   std::vector<double> free_surface_area_;
   std::vector<double> power_density_;  ///< of each heat source of given power at weight 1, at this step [W/m^(Dim - 1)]
   HeatLedger heat_ledger_;
   std::vector<RateSums<Dim, Real>> rates_;
   std::vector<HeatBalance<Dim>> heat_balance_;  ///< empty without heat
-  std::vector<std::array<Real, Dim>> force_sums_;
   std::vector<Vec<Dim>> acceleration_;
   std::vector<Real> energy_rate_;  ///< of an ideal gas [W/kg], or empty
   std::vector<Vec<Dim>>

@@ -56,7 +56,7 @@ double Solver<Dim, Real>::match_driven_density(std::size_t i) const {
   using Fields = PairFields<Dim, Real>;
   const Kernel<Dim> kernel(parameters_.smoothing_length, parameters_.kernel);
   const double per_c2 = 1.0 / (parameters_.sound_speed * parameters_.sound_speed);
-  const auto record = [&](std::size_t j) { return fields_.motion.data() + j * Fields::motion_stride; };
+  const auto record = [&](std::size_t j) { return fields_.record(j); };
   double sum = 0.0, weight = 0.0;
   for (const std::int32_t neighbour : lists_.row(i)) {
     const auto j = static_cast<std::size_t>(neighbour);

@@ -11,7 +11,7 @@ void Solver<Dim, Real>::pack_heat(std::size_t i, double largest_conductivity, Re
   using Fields = PairFields<Dim, Real>;
   const Material& m = material(i);
   // Relative to the melting range, where single precision is needed most.
-  record[0] =
+  record[Fields::heat_at] =
       static_cast<Real>(particles_.temperature[i] - (materials_.front().heat ? materials_.front().heat->cold : 0.0));
   record[Fields::conductivity_at] =
       static_cast<Real>(largest_conductivity > 0.0 && m.heat ? conductivity(m) / largest_conductivity : 0.0);
@@ -23,42 +23,34 @@ template <int Dim, typename Real>
 void Solver<Dim, Real>::pack_motion(const std::vector<Vec<Dim>>& velocity) {
   using Fields = PairFields<Dim, Real>;
   const std::size_t n = particles_.size();
-  const std::size_t n_records = n + images_.size();
-  fields_.motion.resize(n_records * Fields::motion_stride);
-  if (terms_.pair.has_heat()) fields_.heat.resize(n_records * Fields::heat_stride);
+  fields_.records.resize((n + images_.size()) * static_cast<std::size_t>(fields_.stride));
   const bool with_pressure = walls_ || terms_.diffusion;
-  if (with_pressure) fields_.pressure.resize(n_records);
   double largest_conductivity = 0.0;
   for (const Material& m : materials_)
     if (m.heat) largest_conductivity = std::max(largest_conductivity, conductivity(m));
   parallel_for_each(n, [&](std::size_t i) {
-    Real* record = fields_.motion.data() + i * Fields::motion_stride;
+    Real* record = fields_.record(i);
     const Vec<Dim> x = particles_.position[i] - origin_;
     for (int a = 0; a < Dim; ++a) record[a] = static_cast<Real>(x[a]);
     for (int a = 0; a < Dim; ++a) record[Fields::velocity_at + a] = static_cast<Real>(velocity[i][a]);
     record[Fields::volume_at] = static_cast<Real>(mass(i) / particles_.density[i]);
     record[Fields::density_at] = static_cast<Real>(particles_.density[i]);
-    if (terms_.pair.has_heat()) pack_heat(i, largest_conductivity, fields_.heat.data() + i * Fields::heat_stride);
-    if (with_pressure) fields_.pressure[i] = static_cast<Real>(pressure(i));
+    if (terms_.pair.has_heat()) pack_heat(i, largest_conductivity, record);
+    if (with_pressure) record[Fields::pressure_at] = static_cast<Real>(pressure(i));
   });
-  copy_motion_to_images();
+  copy_records_to_images();
 }
 
 template <int Dim, typename Real>
-void Solver<Dim, Real>::copy_motion_to_images() {
-  using Fields = PairFields<Dim, Real>;
+void Solver<Dim, Real>::copy_records_to_images() {
   const std::size_t n = particles_.size();
   parallel_for_each(images_.size(), [&](std::size_t k) {
     const std::size_t source = images_.source[k];
-    Real* record = fields_.motion.data() + (n + k) * Fields::motion_stride;
-    std::copy_n(fields_.motion.data() + source * Fields::motion_stride, Fields::motion_stride, record);
+    Real* record = fields_.record(n + k);
+    std::copy_n(fields_.record(source), fields_.stride, record);
     // From the state, as its source's: shifting the rounded record would round it twice.
     const Vec<Dim> x = particles_.position[source] + images_.shift[k] - origin_;
     for (int a = 0; a < Dim; ++a) record[a] = static_cast<Real>(x[a]);
-    if (terms_.pair.has_heat())
-      std::copy_n(fields_.heat.data() + source * Fields::heat_stride, Fields::heat_stride,
-                  fields_.heat.data() + (n + k) * Fields::heat_stride);
-    if (!fields_.pressure.empty()) fields_.pressure[n + k] = fields_.pressure[source];
   });
 }
 
@@ -72,17 +64,15 @@ double Solver<Dim, Real>::pressure(std::size_t i) const {
 template <int Dim, typename Real>
 void Solver<Dim, Real>::pack_forces(std::size_t i, const Mat<Dim>& corrected_stress) {
   using Fields = PairFields<Dim, Real>;
-  Real* motion = fields_.motion.data() + i * Fields::motion_stride;
+  Real* record = fields_.record(i);
   const double rho = particles_.density[i];
-  for (int a = 0; a < Dim; ++a) motion[Fields::velocity_at + a] = static_cast<Real>(particles_.velocity[i][a]);
-  motion[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
-  motion[Fields::density_at] = static_cast<Real>(rho);
-
-  Real* force = force_record(i);
-  force[0] = static_cast<Real>(pressure(i) / (rho * rho));
+  for (int a = 0; a < Dim; ++a) record[Fields::velocity_at + a] = static_cast<Real>(particles_.velocity[i][a]);
+  record[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
+  record[Fields::density_at] = static_cast<Real>(rho);
+  record[Fields::specific_pressure_at] = static_cast<Real>(pressure(i) / (rho * rho));
   if (terms_.pair.stress)
     for (int a = 0; a < Dim; ++a)
-      for (int b = 0; b < Dim; ++b) force[1 + a * Dim + b] = static_cast<Real>(corrected_stress(a, b));
+      for (int b = 0; b < Dim; ++b) record[Fields::stress_at + a * Dim + b] = static_cast<Real>(corrected_stress(a, b));
 }
 
 /// The same for an ideal gas after a step of dt. Its forces depend on energy and velocity, so both are wanted at the step's end: half a
@@ -94,14 +84,13 @@ void Solver<Dim, Real>::pack_gas(std::size_t i, double dt) {
   const Vec<Dim> velocity = particles_.velocity[i] + ahead * acceleration_[i];
   const double e = particles_.internal_energy[i] + ahead * energy_rate_[i];
   const double rho = particles_.density[i];
-  Real* motion = fields_.motion.data() + i * Fields::motion_stride;
-  for (int a = 0; a < Dim; ++a) motion[Fields::velocity_at + a] = static_cast<Real>(velocity[a]);
-  motion[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
-  motion[Fields::density_at] = static_cast<Real>(rho);
-  Real* force = fields_.force.data() + i * Fields::force_stride(false);
+  Real* record = fields_.record(i);
+  for (int a = 0; a < Dim; ++a) record[Fields::velocity_at + a] = static_cast<Real>(velocity[a]);
+  record[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
+  record[Fields::density_at] = static_cast<Real>(rho);
   const EquationOfState& state = parameters_.equation_of_state;
-  force[0] = static_cast<Real>(compute_pressure(state, 0.0, 1.0, rho, e) / (rho * rho));
-  force[1] = static_cast<Real>(compute_sound_speed(state, 0.0, 1.0, rho, e));
+  record[Fields::specific_pressure_at] = static_cast<Real>(compute_pressure(state, 0.0, 1.0, rho, e) / (rho * rho));
+  record[Fields::sound_speed_at] = static_cast<Real>(compute_sound_speed(state, 0.0, 1.0, rho, e));
 }
 
 /// A solid's viscosity would need tiny steps: with a relaxed stress, that of a shear wave over a quarter of a smoothing length is enough.
@@ -111,7 +100,7 @@ void Solver<Dim, Real>::pack_hourglass(std::size_t i, const Mat<Dim>& velocity_g
   if (terms_.relaxed)
     eta = std::min(eta, 0.25 * particles_.density[i] * parameters_.shear_wave_speed * parameters_.smoothing_length);
   const double half = 0.5 * parameters_.hourglass_control * eta;
-  Real* record = force_record(i) + PairFields<Dim, Real>::hourglass_at;
+  Real* record = fields_.record(i) + PairFields<Dim, Real>::hourglass_at;
   record[0] = static_cast<Real>(half);
   const Symmetric<Dim> doubled = to_symmetric<Dim>(velocity_gradient + velocity_gradient.transpose());
   for (int k = 0; k < n_symmetric<Dim>; ++k) record[1 + k] = static_cast<Real>((k < Dim ? 0.5 : 1.0) * half * doubled[k]);
@@ -130,16 +119,6 @@ void Solver<Dim, Real>::pack_gradients() {
     const Vec<Dim> gradient = terms_.pair.stress ? pressure_gradient_[source]
                                                  : Vec<Dim>(particles_.density[source] * (parameters_.gravity - acceleration_[source]));
     for (int a = 0; a < Dim; ++a) packed_gradient_[i * stride + static_cast<std::size_t>(a)] = static_cast<Real>(gradient[a]);
-  });
-}
-
-template <int Dim, typename Real>
-void Solver<Dim, Real>::copy_forces_to_images() {
-  copy_motion_to_images();
-  const std::size_t n = particles_.size();
-  const int stride = PairFields<Dim, Real>::force_stride(terms_.pair);
-  parallel_for_each(images_.size(), [&](std::size_t k) {
-    std::copy_n(fields_.force.data() + images_.source[k] * stride, stride, fields_.force.data() + (n + k) * stride);
   });
 }
 

@@ -1,7 +1,7 @@
 // Bodies that lose heat: a slab by convection, a slab and a half space to the ground, a drop by radiation; and where the energy goes.
 
+#include "bench/cases/tank.h"
 #include "tests/accuracy/measure.h"
-#include "tests/accuracy/tank.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

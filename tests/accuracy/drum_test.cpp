@@ -1,7 +1,7 @@
 // Walls that turn: a drum carries what it holds to a rigid rotation; Couette flow between a cylinder that turns and one that does not.
 
+#include "bench/cases/set_up.h"
 #include "tests/accuracy/measure.h"
-#include "tests/accuracy/set_up.h"
 #include "tests/bodies.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // Lone particles under gravity: leap-frog is exact for a constant acceleration, whatever the steps.
 
+#include "bench/cases/set_up.h"
 #include "tests/accuracy/measure.h"
-#include "tests/accuracy/set_up.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,8 +1,9 @@
 // A step of temperature on a jittered lattice against the error function, and the rate at which it spreads.
 
+#include "bench/cases/heat_step.h"
+#include "bench/cases/set_up.h"
 #include "core/sph/kernel.h"
 #include "tests/accuracy/measure.h"
-#include "tests/accuracy/set_up.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,44 +16,7 @@
 namespace smelt {
 namespace {
 
-constexpr double diffusivity = 0.1, density = 1000.0, cold = 300.0, width = 0.5;
-
-double start_temperature(const Vec<2>& x) {
-  return x[0] < 0.0 ? cold + 1.0 : cold;
-}
-
-/// A strip 2 m long that repeats after half a metre across, one kelvin warmer for x < 0, at rest: density is at rest,
-/// so nothing moves. The lattice's jitter depends on `seed`.
-Solver<2, double> make_strip(double spacing, double h_over_spacing, double jitter, int seed) {
-  Particles<2> p = make_block<2>({Vec<2>(-1.0, 0.0), Vec<2>(1.0, width)}, spacing, density);
-  for (std::size_t i = 0; i < p.size(); ++i) {
-    const auto site = static_cast<std::int64_t>(i);
-    p.position[i] += jitter * spacing * Vec<2>(site_noise(site, seed, 0, 0), site_noise(site, seed, 0, 1));
-  }
-  for (const auto& x : p.position) p.temperature.push_back(start_temperature(x));
-  auto parameters = make_parameters<2>(spacing, 1.0);
-  parameters.smoothing_length = h_over_spacing * spacing;
-  parameters.period = {Vec<2>(0.0, 0.0), Vec<2>(0.0, width)};
-  Material m = inviscid_material(density);
-  m.heat = HeatProperties{diffusivity, cold, cold + 1.0};
-  return {parameters, {m}, {}, std::move(p)};
-}
-
-/// The exact temperature above the cold side. The table's rows are its values; between them a straight line is off by
-/// more than the method.
-double exact(double x, double time) {
-  return 0.5 * std::erfc(x / (2.0 * std::sqrt(diffusivity * time)));
-}
-
-/// Over the particles away from the ends.
-double l2_error(const Solver<2, double>& solver, double time) {
-  std::vector<double> differences;
-  const auto& p = solver.particles();
-  for (std::size_t i = 0; i < p.size(); ++i)
-    if (std::abs(p.position[i][0]) < 0.95)
-      differences.push_back(p.temperature[i] - cold - exact(p.position[i][0], time));
-  return compute_norms(differences).l2;
-}
+using namespace heat_step;
 
 TEST(HeatStep, TheTableIsTheErrorFunction) {
   for (const auto& [name, time] : {std::pair{"heat_step_t0.05", 0.05}, std::pair{"heat_step_t0.2", 0.2}}) {

@@ -14,8 +14,7 @@ namespace {
 
 TEST(Measure, EveryReferenceCanBeRead) {
   int n = 0;
-  for (const auto& entry :
-       std::filesystem::directory_iterator(source_folder().string() + "/tests/data/reference")) {
+  for (const auto& entry : std::filesystem::directory_iterator(source_folder() / "bench" / "reference")) {
     if (entry.path().extension() != ".csv") continue;
     ++n;
     EXPECT_NO_THROW(read_reference(entry.path().stem().string())) << entry.path();

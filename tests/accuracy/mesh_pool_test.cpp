@@ -2,8 +2,8 @@
 // degrees. The meshes are about as fine as the particles, so that every kind of wall integral takes part
 // (docs/decisions/0014-fine-walls.md).
 
+#include "bench/cases/tank.h"
 #include "tests/accuracy/measure.h"
-#include "tests/accuracy/tank.h"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

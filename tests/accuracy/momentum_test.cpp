@@ -1,7 +1,7 @@
 // A free blob with every term on keeps its momentum.
 
+#include "bench/cases/set_up.h"
 #include "tests/accuracy/measure.h"
-#include "tests/accuracy/set_up.h"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>

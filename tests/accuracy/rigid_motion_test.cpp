@@ -1,10 +1,10 @@
 // A stiff blob in rigid motion: no viscous force, surface included, and a spin that lasts.
 
+#include "bench/cases/rigid_rotation.h"
 #include "core/sph/kernel.h"
 #include "core/sph/rheology.h"
 #include "core/sph/stress_update.h"
 #include "tests/accuracy/measure.h"
-#include "tests/accuracy/set_up.h"
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -20,21 +20,9 @@
 namespace smelt {
 namespace {
 
-constexpr double density = 1000.0, spacing = 0.05, sound_speed = 20.0;
+using namespace rigid_rotation;
+
 constexpr int across = 6;  // spacings from the centre to the surface
-
-/// J = 1000, and a yield stress above what the spins of these tests pull.
-Material stiff_material() {
-  return viscoplastic_material(density, 2000.0, 500.0, 0.5, 1000.0);
-}
-
-template <int Dim>
-Vec<Dim> spin_velocity(const Vec<Dim>& x, double rate) {
-  Vec<Dim> v = Vec<Dim>::Zero();
-  v[0] = -rate * x[1];
-  v[1] = rate * x[0];
-  return v;
-}
 
 template <int Dim>
 Particles<Dim> make_blob(double radius, double jitter, double rate, double translation) {
@@ -114,36 +102,11 @@ TEST(RigidMotion, NoViscousForceIn3D) {
   report_force<3>();
 }
 
-template <int Dim>
-double angular_momentum(const Solver<Dim, double>& solver) {
-  double sum = 0.0;
-  for (std::size_t i = 0; i < solver.particles().size(); ++i) {
-    const auto &x = solver.particles().position[i], &v = solver.particles().velocity[i];
-    sum += solver.mass(i) * (x[0] * v[1] - x[1] * v[0]);
-  }
-  return sum;
-}
-
-/// About the third axis through the origin, where the blob's centre stays.
-template <int Dim>
-double angular_velocity(const Solver<Dim, double>& solver) {
-  double inertia = 0.0;
-  for (std::size_t i = 0; i < solver.particles().size(); ++i)
-    inertia += solver.mass(i) * solver.particles().position[i].template head<2>().squaredNorm();
-  return angular_momentum<Dim>(solver) / inertia;
-}
-
 /// One whole turn of a free body with the relaxed stress, its rim (`radius` from the origin [m]) at 2 % of the speed of
 /// sound.
 template <int Dim>
 void report_turn(const std::string& body, Particles<Dim> particles, double radius) {
-  const double rate = 0.02 * sound_speed / radius;
-  for (std::size_t i = 0; i < particles.size(); ++i)
-    particles.velocity[i] = spin_velocity<Dim>(particles.position[i], rate);
-  auto parameters = make_parameters<Dim>(spacing, sound_speed);
-  parameters.shear_wave_speed = sound_speed;
-  parameters.artificial_viscosity = 0.1;
-  Solver<Dim, double> solver(parameters, {stiff_material()}, {}, std::move(particles));
+  Solver<Dim, double> solver = make_spinning<Dim>(std::move(particles), radius);
   solver.prepare();
   const double before = angular_velocity<Dim>(solver), momentum = angular_momentum<Dim>(solver);
   // The marker at the rim says that it did turn, and once.
@@ -152,7 +115,7 @@ void report_turn(const std::string& body, Particles<Dim> particles, double radiu
     return Vec<Dim>(solver.particles().position[std::find(ids.begin(), ids.end(), id) - ids.begin()]);
   };
   const Vec<Dim> marker = position_of(0);
-  const double turn = 2.0 * std::numbers::pi / rate;
+  const double turn = 2.0 * std::numbers::pi / rate_of(radius);
   const int steps = advance_by(solver, 0.5 * turn);
   EXPECT_LT((position_of(0).template head<2>() + marker.template head<2>()).norm(), 0.05 * radius) << "half a turn";
   advance_by(solver, 0.5 * turn, 0.5 * turn);

@@ -1,7 +1,7 @@
 // Lava that has set stays where it is, and later lava flows over and around it.
 
+#include "bench/cases/tank.h"
 #include "tests/accuracy/measure.h"
-#include "tests/accuracy/tank.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // Slow, small and large: what single precision and absolute constants would spoil.
 
-#include "tests/accuracy/set_up.h"
+#include "bench/cases/set_up.h"
 #include "tests/stability/watch.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // Fluids and solids at walls: struck far too hard, left alone for long, and lava on a slope without XSPH.
 
-#include "tests/accuracy/tank.h"
+#include "bench/cases/tank.h"
 #include "tests/stability/watch.h"
 
 #include <cmath>

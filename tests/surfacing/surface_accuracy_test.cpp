@@ -1,5 +1,6 @@
 // How true surfaces are to what the particles fill, and how still they stand while it moves.
 
+#include "bench/cases/surfacing.h"
 #include "core/geometry/seeding.h"
 #include "core/geometry/simplex_bvh.h"
 #include "surfacing/particle_bins.h"
@@ -12,42 +13,11 @@
 
 #include <cmath>
 #include <numbers>
-#include <random>
 
 namespace smelt {
 namespace {
 
-ParticleFrame make_frame(std::vector<Vec3> position, double spacing) {
-  ParticleFrame frame;
-  frame.velocity.assign(position.size(), Vec3f::Zero());
-  frame.density.assign(position.size(), 1000.0f);
-  frame.position = std::move(position);
-  frame.mass = 1000.0 * spacing * spacing * spacing;
-  frame.spacing = spacing;
-  return frame;
-}
-
-void jitter(ParticleFrame& frame, double most) {
-  std::mt19937 random(7);
-  std::uniform_real_distribution<double> uniform(-most * frame.spacing, most * frame.spacing);
-  for (Vec3& x : frame.position) x += Vec3(uniform(random), uniform(random), uniform(random));
-}
-
-ParticleFrame make_ball(double radius, double spacing) {
-  std::vector<Vec3> position;
-  const double n = std::ceil(radius / spacing) + 1;
-  for (double k = -n; k <= n; ++k)
-    for (double j = -n; j <= n; ++j)
-      for (double i = -n; i <= n; ++i)
-        if (const Vec3 x = spacing * Vec3(i + 0.2, j + 0.3, k + 0.1); x.norm() < radius) position.push_back(x);
-  return make_frame(std::move(position), spacing);
-}
-
-SurfacingOptions with_kernels(bool anisotropic) {
-  SurfacingOptions options;
-  options.anisotropic = anisotropic;
-  return options;
-}
+using namespace surfacing_cases;
 
 double degrees(double radians) {
   return radians * 180.0 / std::numbers::pi;
@@ -57,8 +27,6 @@ double degrees(double radians) {
 class Nearest {
  public:
   explicit Nearest(const TriangleMesh& mesh) : mesh_(mesh), bvh_(simplices(mesh)) {}
-
-  double distance(const Vec3& x, double limit) const { return bvh_.distance(x, limit); }
 
   /// The nearest vertex of the triangles within `radius`, which must have one.
   std::uint32_t vertex(const Vec3& x, double radius) const {
@@ -77,44 +45,9 @@ class Nearest {
   }
 
  private:
-  static std::vector<Simplex<3>> simplices(const TriangleMesh& mesh) {
-    std::vector<Simplex<3>> out;
-    for (const auto& t : mesh.triangles) out.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
-    return out;
-  }
   const TriangleMesh& mesh_;
   SimplexBvh<3> bvh_;
 };
-
-/// Distances from the vertices and the middles of the faces of `from` to `to`, weighted with area. Points that `counts` says no to are left
-/// out of the largest, and their area is kept apart.
-struct Distances {
-  double largest = 0.0, mean = 0.0, largest_of_all = 0.0, share_left_out = 0.0;
-};
-
-template <typename Counts>
-Distances distances(const TriangleMesh& from, const TriangleMesh& to, double limit, Counts&& counts) {
-  const Nearest nearest(to);
-  Distances out;
-  double area = 0.0;
-  for (const auto& t : from.triangles) {
-    const Vec3 &a = from.vertices[t[0]], &b = from.vertices[t[1]], &c = from.vertices[t[2]];
-    const double of_face = 0.5 * (b - a).cross(c - a).norm();
-    for (const Vec3& x : {a, b, c, Vec3((a + b + c) / 3.0)}) {
-      const double d = nearest.distance(x, limit);
-      out.largest_of_all = std::max(out.largest_of_all, d);
-      if (counts(x))
-        out.largest = std::max(out.largest, d);
-      else
-        out.share_left_out += 0.25 * of_face;
-      out.mean += 0.25 * of_face * d;
-    }
-    area += of_face;
-  }
-  out.mean /= area;
-  out.share_left_out /= area;
-  return out;
-}
 
 class SurfaceAccuracy : public ::testing::TestWithParam<bool> {};
 INSTANTIATE_TEST_SUITE_P(Kernels, SurfaceAccuracy, ::testing::Bool(), [](const auto& p) { return p.param ? "Anisotropic" : "Isotropic"; });
@@ -129,20 +62,12 @@ TEST_P(SurfaceAccuracy, ABallOfTenThousandParticles) {
     const SurfaceMesh surface = build_surface(frame, with_kernels(GetParam()));
     ASSERT_EQ(testing::find_defect(surface.mesh), "");
     ASSERT_EQ(compute_topology(surface.mesh).euler_characteristic, 2);
-    double sum = 0.0, farthest = 0.0, angle = 0.0;
-    for (std::size_t v = 0; v < surface.normals.size(); ++v) {
-      const Vec3& x = surface.mesh.vertices[v];
-      sum += x.norm();
-      farthest = std::max(farthest, std::abs(x.norm() / radius - 1.0));
-      angle += std::pow(std::acos(std::min(1.0, surface.normals[v].cast<double>().dot(x.normalized()))), 2);
-    }
-    const auto n = static_cast<double>(surface.normals.size());
-    const double volume = compute_volume(surface.mesh) / (static_cast<double>(frame.size()) * std::pow(spacing, 3));
-    std::printf("shaken by %.1f: mean radius %+.2f %%, farthest %.2f %%, volume %+.2f %%, normals %.2f degrees\n", shaken, 100.0 * (sum / n / radius - 1.0),
-                100.0 * farthest, 100.0 * (volume - 1.0), degrees(std::sqrt(angle / n)));
-    EXPECT_NEAR(sum / n / radius, 1.0, 0.01);
-    EXPECT_NEAR(volume, 1.0, GetParam() ? 0.005 : 0.01);
-    EXPECT_LT(degrees(std::sqrt(angle / n)), 3.0);
+    const BallErrors errors = measure_ball(surface, frame, radius);
+    std::printf("shaken by %.1f: mean radius %+.2f %%, farthest %.2f %%, volume %+.2f %%, normals %.2f degrees\n", shaken, 100.0 * errors.mean_radius,
+                100.0 * errors.farthest, 100.0 * errors.volume, degrees(errors.normals));
+    EXPECT_NEAR(errors.mean_radius, 0.0, 0.01);
+    EXPECT_NEAR(errors.volume, 0.0, GetParam() ? 0.005 : 0.01);
+    EXPECT_LT(degrees(errors.normals), 3.0);
   }
 }
 

@@ -1,8 +1,8 @@
 // Rigid bodies in a fluid: both ways.
 
+#include "bench/cases/set_up.h"
 #include "core/parallel.h"
 #include "core/sph/solver.h"
-#include "tests/accuracy/set_up.h"
 #include "tests/bodies.h"
 
 #include <gtest/gtest.h>

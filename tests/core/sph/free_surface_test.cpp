@@ -2,8 +2,8 @@
 
 #include "core/sph/free_surface.h"
 
+#include "bench/cases/set_up.h"
 #include "core/sph/solver.h"
-#include "tests/accuracy/set_up.h"
 
 #include <gtest/gtest.h>
 

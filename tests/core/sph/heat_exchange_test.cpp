@@ -1,8 +1,8 @@
 #include "core/sph/heat_exchange.h"
 
+#include "bench/cases/set_up.h"
 #include "core/error.h"
 #include "core/sph/enthalpy.h"
-#include "tests/accuracy/set_up.h"
 
 #include <gtest/gtest.h>
 

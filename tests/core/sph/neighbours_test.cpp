@@ -36,9 +36,9 @@ void expect_all_pairs(std::vector<Vec<Dim>> points, double radius) {
     std::vector<std::int32_t> found(row.begin(), row.end());
     std::sort(found.begin(), found.end());
     ASSERT_EQ(found, expected) << "particle " << i;
-    ASSERT_EQ(lists.padded[i] % 8, 0);
-    for (int k = lists.count[i]; k < lists.padded[i]; ++k)
-      ASSERT_EQ(lists.index[lists.begin[i] + k], static_cast<std::int32_t>(i)) << "rows are padded with the particle itself";
+    const auto padded = lists.padded_row(i);
+    ASSERT_EQ(padded.size() % 8, 0u);
+    for (const auto k : padded.subspan(row.size())) ASSERT_EQ(k, static_cast<std::int32_t>(i)) << "rows are padded with the particle itself";
   }
 }
 

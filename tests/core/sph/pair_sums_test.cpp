@@ -1,9 +1,11 @@
 #include "core/sph/pair_sums.h"
 
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 namespace smelt {
@@ -21,37 +23,32 @@ struct Pair {
   Pair(KernelType kernel, double distance) {
     using Fields = PairFields<Dim, Real>;
     constexpr int lanes = pair_lanes<Real>;
-    fields.motion.resize(2 * Fields::motion_stride);
-    fields.force.resize(2 * Fields::force_stride(true));
-    fields.heat.assign(2 * Fields::heat_stride, Real(0));
-    for (int k = 0; k < 2; ++k) {
-      Real* record = fields.heat.data() + k * Fields::heat_stride;
-      record[0] = k == 0 ? Real(1) : Real(3);
+    fields.stride = Fields::stride_of(true);
+    fields.records.assign(2 * static_cast<std::size_t>(fields.stride), Real(0));
+    for (const int k : {0, 1}) {
+      Real* record = fields.record(static_cast<std::size_t>(k));
+      record[Fields::heat_at] = k == 0 ? Real(1) : Real(3);
       record[Fields::conductivity_at] = k == 0 ? Real(1) : Real(0.6);
       record[Fields::inverse_trace_at] = k == 0 ? Real(2) : Real(0.5);
       record[Fields::balance_at] = k == 0 ? Real(0.2) : Real(-0.3);
+      for (int a = 0; a < Dim; ++a) {
+        record[a] = k == 0 ? static_cast<Real>(distance / std::sqrt(Dim)) : Real(0);
+        record[Fields::velocity_at + a] = k == 0 ? Real(-1) : Real(2 + a);
+      }
+      record[Fields::volume_at] = Real(0.5);
+      record[Fields::density_at] = static_cast<Real>(2 + k);
+      record[Fields::specific_pressure_at] = static_cast<Real>(k);
+      for (int entry = 0; entry < Dim * Dim; ++entry) record[Fields::stress_at + entry] = static_cast<Real>(1 + entry + k);
     }
-    for (int a = 0; a < Dim; ++a) {
-      fields.motion[a] = static_cast<Real>(distance / std::sqrt(Dim));
-      fields.motion[Fields::velocity_at + a] = Real(-1);
-      fields.motion[Fields::motion_stride + Fields::velocity_at + a] = Real(2 + a);
-    }
-    for (const int record : {0, 1}) {
-      fields.motion[record * Fields::motion_stride + Fields::volume_at] = Real(0.5);
-      fields.motion[record * Fields::motion_stride + Fields::density_at] = static_cast<Real>(2 + record);
-      for (int k = 0; k <= Dim * Dim; ++k)
-        fields.force[record * Fields::force_stride(true) + k] = static_cast<Real>(k + record);
-    }
-    lists.begin = {0, lanes};
+    lists.row_multiple = lanes;
+    lists.blocks = {std::vector<std::int32_t>(lanes, 0), std::vector<std::int32_t>(lanes, 1)};
+    lists.blocks[0][0] = 1;
+    lists.blocks[1][0] = 0;
+    lists.begin = {lists.blocks[0].data(), lists.blocks[1].data()};
     lists.count = {1, 1};
-    lists.padded = {lanes, lanes};
-    lists.index.assign(lanes, 0);
-    lists.index.insert(lists.index.end(), lanes, 1);
-    lists.index[0] = 1;
-    lists.index[lanes] = 0;
     // The distance as the loops see it, rounded.
     double r2 = 0.0;
-    for (int a = 0; a < Dim; ++a) r2 += std::pow(static_cast<double>(fields.motion[a]), 2);
+    for (int a = 0; a < Dim; ++a) r2 += std::pow(static_cast<double>(fields.record(0)[a]), 2);
     r = std::sqrt(r2);
     const Kernel<Dim> scalar(h, kernel);
     f = scalar.derivative(r) / r;
@@ -74,7 +71,7 @@ void expect_kernels_agree(double tolerance) {
       RateSums<Dim, Real> sums[2];
       compute_rate_sums<Dim, Real>(pair.fields, pair.lists, terms, h, 0, 2, sums);
       double approach = 0.0;
-      for (int a = 0; a < Dim; ++a) approach += -(3.0 + a) * pair.fields.motion[a];
+      for (int a = 0; a < Dim; ++a) approach += -(3.0 + a) * pair.fields.record(0)[a];
       const double slope_scale = std::abs(scalar.derivative(0.5 * h));
       const double rate_scale = 0.5 * 3.0 * 12.0 * slope_scale;  // v_ij is up to 12
       EXPECT_NEAR(sums[0].density_rate, 0.5 * 3.0 * approach * pair.f, tolerance * rate_scale);
@@ -82,7 +79,7 @@ void expect_kernels_agree(double tolerance) {
       const double heat_scale = 10.0 * slope_scale / h;  // the quadratic's F peaks where r is some 0.1 h
       // T_0 - T_1 = -2, the mean of 1/theta 1.25, conductivities 1 and 0.6; the pair's own padding (r = 0) must add
       // nothing.
-      const double x = pair.fields.motion[0], balance = std::clamp(1.0 + x * 0.5, 0.2, 1.8);
+      const double x = pair.fields.record(0)[0], balance = std::clamp(1.0 + x * 0.5, 0.2, 1.8);
       EXPECT_NEAR(sums[0].heat, 2.0 * 0.5 * -2.0 * pair.f * balance * 1.25 * (2.0 * 0.6 / 1.6), tolerance * heat_scale);
       EXPECT_NEAR(sums[0].moment_trace, -0.5 * pair.r * pair.r * pair.f * balance / Dim, tolerance * heat_scale);
       EXPECT_NEAR(sums[0].heat_imbalance[0], 0.5 * pair.f * x * (1.0 + 0.3 * x), tolerance * heat_scale);
@@ -90,12 +87,15 @@ void expect_kernels_agree(double tolerance) {
 
       std::array<Real, Dim> acceleration[2];
       terms.stress = false;
-      PairFields<Dim, Real> fields = pair.fields;
-      fields.force.assign(2 * PairFields<Dim, Real>::force_stride(false), Real(0));
-      fields.force[0] = Real(4);
+      using Fields = PairFields<Dim, Real>;
+      Fields fields;
+      for (const std::size_t k : {0, 1}) {
+        fields.records.insert(fields.records.end(), pair.fields.record(k), pair.fields.record(k) + fields.stride);
+        fields.record(k)[Fields::specific_pressure_at] = k == 0 ? Real(4) : Real(0);
+      }
       compute_force_sums<Dim, Real>(fields, pair.lists, terms, {h, 0.0, 1.0}, 0, 2, acceleration);
       for (int a = 0; a < Dim; ++a)
-        EXPECT_NEAR(acceleration[0][a], -0.5 * 3.0 * 4.0 * pair.f * pair.fields.motion[a],
+        EXPECT_NEAR(acceleration[0][a], -0.5 * 3.0 * 4.0 * pair.f * pair.fields.record(0)[a],
                     4.0 * tolerance * slope_scale);
     }
   }
@@ -107,6 +107,60 @@ TEST(PairSums, KernelsAgreeWithTheScalarOnes) {
   expect_kernels_agree<3, double>(1e-13);
   // The quintic is a difference of powers up to seven times itself: some twenty roundings of 1.2e-7.
   expect_kernels_agree<3, float>(3e-6);
+}
+
+/// A jittered block with neighbours of any number, all fields random.
+struct Block {
+  PairFields<3, float> fields;
+  NeighbourLists lists;
+  std::size_t n = 0;
+
+  Block() {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    std::vector<Vec3> position;
+    std::vector<std::int32_t> id;
+    for (int k = 0; k < 9 * 9 * 9; ++k) {
+      id.push_back(k);
+      position.push_back(Vec3(k % 9, k / 9 % 9, k / 81) + 0.3 * Vec3(uniform(random), uniform(random), uniform(random)));
+    }
+    const double reach = 2.0 * h * 2.0;
+    std::vector<Vec3> sorted;
+    for (const std::int32_t k : compute_cell_order<3>(position, id, reach)) sorted.push_back(position[static_cast<std::size_t>(k)]);
+    build_neighbour_lists<3>(sorted, reach, reach, pair_lanes<float>, lists);
+    n = sorted.size();
+    using Fields = PairFields<3, float>;
+    fields.stride = Fields::stride_of(true);
+    fields.records.resize(n * static_cast<std::size_t>(fields.stride));
+    for (float& value : fields.records) value = static_cast<float>(1.5 + uniform(random));
+    for (std::size_t i = 0; i < n; ++i)
+      for (int a = 0; a < 3; ++a) fields.record(i)[a] = static_cast<float>(sorted[i][a]);
+  }
+};
+
+TEST(PairSums, EveryInstructionSetGivesTheSameBytes) {
+  PairTerms terms;
+  terms.stress = terms.hourglass = terms.xsph = true;
+  terms.heat = HeatTerms::mixed;
+  const Block block;
+  const auto evaluate = [&](std::vector<RateSums<3, float>>& rates, std::vector<std::array<float, 3>>& forces) {
+    rates.resize(block.n);
+    forces.resize(block.n);
+    compute_rate_sums<3, float>(block.fields, block.lists, terms, 2.0 * h, 0, block.n, rates.data());
+    compute_force_sums<3, float>(block.fields, block.lists, terms, {2.0 * h, 0.1, 10.0}, 0, block.n, forces.data());
+  };
+  std::vector<RateSums<3, float>> widest_rates, rates;
+  std::vector<std::array<float, 3>> widest_forces, forces;
+  evaluate(widest_rates, widest_forces);
+  hwy::SetSupportedTargetsForTest(HWY_AVX2);
+  hwy::GetChosenTarget().DeInit();
+  evaluate(rates, forces);
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
+  for (std::size_t i = 0; i < block.n; ++i) {
+    ASSERT_EQ(std::memcmp(&rates[i], &widest_rates[i], sizeof rates[i]), 0) << "of particle " << i;
+    ASSERT_EQ(forces[i], widest_forces[i]) << "of particle " << i;
+  }
 }
 
 }  // namespace

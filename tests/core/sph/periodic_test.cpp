@@ -57,7 +57,7 @@ void expect_all_pairs(const Box<Dim>& box, double radius, std::size_t n) {
   for (const auto i : order) sorted.push_back(points[i]);
   NeighbourLists lists;
   const auto images = build_periodic_neighbour_lists<Dim>(box, sorted, order, radius, 8, lists);
-  ASSERT_EQ(lists.begin.size(), n);
+  ASSERT_EQ(lists.size(), n);
   for (std::size_t i = 0; i < n; ++i) {
     std::set<std::int32_t> expected;
     for (std::size_t j = 0; j < n; ++j) {
@@ -75,8 +75,7 @@ void expect_all_pairs(const Box<Dim>& box, double radius, std::size_t n) {
       EXPECT_TRUE(found.insert(source).second) << "particle " << i << " sees " << source << " twice";
     }
     ASSERT_EQ(found, expected) << "particle " << i;
-    for (int k = lists.count[i]; k < lists.padded[i]; ++k)
-      ASSERT_EQ(lists.index[lists.begin[i] + k], static_cast<std::int32_t>(i));
+    for (const auto k : lists.padded_row(i).subspan(lists.row(i).size())) ASSERT_EQ(k, static_cast<std::int32_t>(i));
   }
 }
 

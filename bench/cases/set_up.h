@@ -1,5 +1,5 @@
 #pragma once
-// Fluids for tests: lattices, discs and balls, and the loop that advances them.
+// Fluids for cases and tests: lattices, discs and balls, and the loop that advances them.
 
 #include "core/sph/solver.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 // Water in open tanks: walls, levels, and the pressure that a gauge in a wall would show.
 
-#include "tests/accuracy/set_up.h"
+#include "bench/cases/set_up.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,0 +1,77 @@
+#include "bench/report/report.h"
+
+#include "bench/cases/all_cases.h"
+#include "core/error.h"
+#include "io/atomic_file.h"
+#include "tests/bench/made_up_case.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <set>
+
+namespace smelt {
+namespace {
+
+using test::made_up_case;
+
+TEST(Report, EveryCaseSaysWhatItIs) {
+  std::set<std::string> names;
+  for (const Case& problem : all_cases()) {
+    SCOPED_TRACE(problem.name);
+    EXPECT_TRUE(names.insert(problem.name).second);
+    EXPECT_TRUE(problem.measures.ends_with(".") && problem.good.ends_with("."));
+    EXPECT_GE(problem.quick.size(), 3u);
+    EXPECT_LE(problem.full.size(), 6u);
+    EXPECT_TRUE(std::is_sorted(problem.quick.begin(), problem.quick.end()) && std::is_sorted(problem.full.begin(), problem.full.end()));
+    EXPECT_FALSE(problem.methods.empty());
+    EXPECT_GT(problem.good_error, 0.0);
+  }
+  EXPECT_GE(names.size(), 12u);
+}
+
+TEST(Report, ChoosesCasesByName) {
+  const std::vector<Case> all{made_up_case("channel"), made_up_case("slump"), made_up_case("cavity")};
+  EXPECT_EQ(select(all, {}).cases.size(), 3u);
+  EXPECT_TRUE(select(all, {}).stability);
+  const Selection chosen = select(all, {"cavity", "channel"});
+  ASSERT_EQ(chosen.cases.size(), 2u);
+  EXPECT_EQ(chosen.cases[0].name, "channel");
+  EXPECT_FALSE(chosen.stability);
+  EXPECT_TRUE(select(all, {"stability"}).stability);
+  EXPECT_TRUE(select(all, {"stability"}).cases.empty());
+}
+
+TEST(Report, NamesTheCasesWhereThereIsNoSuchOne) {
+  try {
+    select({made_up_case("channel"), made_up_case("slump")}, {"chanel"});
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    EXPECT_STREQ(error.what(), "there is no case \"chanel\" (did you mean \"channel\"?); cases are channel, slump, stability");
+  }
+}
+
+/// With gnuplot: writes a report of two cases into a folder of its own, the second of which fails in part.
+TEST(Report, LosesNothingToAFailure) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / "report_test";
+  std::filesystem::remove_all(folder);
+  ReportOptions options;
+  options.quick = true;
+  options.folder = folder;
+  Progress silent;
+  try {
+    make_report({{made_up_case("first"), made_up_case("second")}, false}, options, silent);
+    FAIL() << "nothing was thrown";
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    if (message.find("gnuplot") != std::string::npos) GTEST_SKIP() << message;
+    EXPECT_NE(message.find("second, fails \"at\" 20 at 20 failed: no, thank you"), std::string::npos) << message;
+  }
+  const std::string page = read_file(folder / "index.html");
+  EXPECT_NE(page.find("<section id=\"first\">"), std::string::npos);
+  EXPECT_NE(page.find("<section id=\"second\">"), std::string::npos);
+  for (const char* file : {"runs.csv", "profile_first.csv", "profile_second.csv"}) EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
+}
+
+}  // namespace
+}  // namespace smelt
