@@ -17,6 +17,8 @@
 namespace smelt {
 
 struct ShotSettings {
+  /// Named settings for everything else (scenes/quality.h); done with once a scene is read.
+  std::optional<std::string> quality;
   std::string name;
   int frames = 0;
   double fps = 24.0;

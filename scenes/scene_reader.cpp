@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "io/toml.h"
 #include "scenes/nearest_word.h"
+#include "scenes/quality.h"
 #include "scenes/schema.h"
 #include "scenes/validate_scene.h"
 
@@ -330,9 +331,11 @@ Scene read_scene(const std::filesystem::path& path, const std::vector<std::strin
   Scene scene;
   scene.file = path;
   scene.folder = std::filesystem::absolute(path).parent_path();
+  set_defaults_for(root.at_path("shot.quality").value_or(std::string_view()), scene);
   SceneReader reader(root, errors);
   visit_scene(reader, scene);
   reader.close_scope();
+  apply_quality(scene);
   validate_scene(scene, errors);
   errors.throw_if_any();
   scene.places = errors.places();

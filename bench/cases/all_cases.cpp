@@ -6,6 +6,7 @@
 #include "bench/cases/gravity_current.h"
 #include "bench/cases/heat_step.h"
 #include "bench/cases/hydrostatic_pool.h"
+#include "bench/cases/knobs.h"
 #include "bench/cases/poiseuille.h"
 #include "bench/cases/rigid_rotation.h"
 #include "bench/cases/shock_tube.h"
@@ -37,7 +38,9 @@ std::vector<Case> all_cases() {
           surfacing_cases::make_sphere_case(),
           surfacing_cases::make_bunny_case(),
           furnace::make_black_body_case(),
-          furnace::make_furnace_case()};
+          furnace::make_furnace_case(),
+          knobs::make_flow_case(),
+          knobs::make_surface_case()};
 }
 
 }  // namespace smelt

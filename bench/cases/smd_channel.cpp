@@ -61,7 +61,7 @@ Reference read_profile(int jump) {
   return read_reference(fmt::format("smd_channel_J{}", jump));
 }
 
-Solver<2, double> make_channel(int across, double jump) {
+Solver<2, double> make_channel(int across, double jump, const std::function<void(SolverParameters<2>&)>& tune) {
   const double spacing = 2.0 / across, wave_speed = 40.0;
   auto parameters = make_parameters<2>(spacing, wave_speed);
   parameters.smoothing_length = 1.3 * spacing;
@@ -71,6 +71,7 @@ Solver<2, double> make_channel(int across, double jump) {
   parameters.hourglass_control = 1.0;
   parameters.period.lower = Vec<2>(0.0, 0.0);
   parameters.period.upper = Vec<2>(8.0 * spacing, 0.0);
+  if (tune) tune(parameters);
   Obstacle<2> planes{{{Vec<2>(4.0, -1.0), Vec<2>(-2.0, -1.0)}, {Vec<2>(-2.0, 1.0), Vec<2>(4.0, 1.0)}}};
   planes.wall = true;
   Colliders<2> colliders;

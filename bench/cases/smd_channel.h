@@ -13,8 +13,8 @@ constexpr double steady_time = 4.0;  ///< time from rest after which nothing cha
 /// The steady profile for jump number 15, 150 or 1500: velocity and -du/dy over the distance from the middle.
 Reference read_profile(int jump);
 
-/// At rest: a channel -1 < y < 1 eight spacings long that repeats, `across` particles wide.
-Solver<2, double> make_channel(int across, double jump);
+/// At rest: a channel -1 < y < 1 eight spacings long that repeats, `across` particles wide; `tune` may change its settings.
+Solver<2, double> make_channel(int across, double jump, const std::function<void(SolverParameters<2>&)>& tune = {});
 
 struct Errors {
   double velocity;  ///< L2 of the differences over L2 of the velocity

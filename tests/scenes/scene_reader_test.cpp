@@ -307,5 +307,30 @@ TEST(NearestWord, FindsTyposAndMissingUnits) {
   EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
 }
 
+TEST(Quality, SetsDefaultsThatTheSceneMayOverrule) {
+  const auto path = write_scene_file(good_scene);
+  const Scene plain = read_scene(path);
+  const Scene preview = read_scene(path, {"shot.quality=preview"});
+  EXPECT_EQ(*preview.particles.count, *plain.particles.count / 4);
+  EXPECT_GT(preview.surface.cell_over_spacing, plain.surface.cell_over_spacing);
+  EXPECT_EQ(preview.camera.width, plain.camera.width / 2);
+  EXPECT_GT(read_scene(path, {"shot.quality=final"}).render.samples, plain.render.samples);
+  const Scene study = read_scene(path, {"shot.quality=study", "time_step.courant=0.1"});
+  EXPECT_EQ(study.solver.precision, "double");
+  EXPECT_EQ(study.solver.xsph, 0.0);
+  EXPECT_EQ(study.time_step.courant, 0.1);
+}
+
+TEST(Quality, IsAppliedOnce) {
+  const Scene preview = read_scene(write_scene_file(good_scene), {"shot.quality=preview"});
+  const Scene again = read_scene(write_scene_file(write_scene(preview)));
+  EXPECT_EQ(*again.particles.count, *preview.particles.count);
+  EXPECT_EQ(again.surface.cell_over_spacing, preview.surface.cell_over_spacing);
+}
+
+TEST(Quality, UnknownOnesAreRefused) {
+  EXPECT_NE(error_of(good_scene, {"shot.quality=best"}).find("shot.quality"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace smelt
