@@ -6,6 +6,7 @@
 #include "cli/terminal_progress.h"
 #include "core/error.h"
 #include "scenes/check_scene.h"
+#include "scenes/machine_pace.h"
 #include "scenes/describe_file.h"
 #include "scenes/run_scene.h"
 #include "scenes/scene_reader.h"
@@ -115,10 +116,12 @@ void print_check(const SceneOptions& o) {
   fmt::print(
       "scene       {}: {} frames at {} fps\nparticles   {}{}, {:.4g} m apart\nvolume      {:.6g} m3\nsound speed {:.4g} m/s\n"
       "time step   {:.3g} s, set by the {} term\nsteps       {:.0f} at that time step\nmemory      {:.1f} MB for the simulation\n"
-      "time        {:.0f} s for the simulation, at this machine's pace now\n",
+      "time        {:.0f} s for the simulation, {:.0f} s for the surfaces, {:.0f} s for the pictures, {}\n",
       scene.shot.name, scene.shot.frames, scene.shot.fps, f.n_particles,
       f.n_particles_end == f.n_particles ? "" : fmt::format(" at the start, {} at the end", f.n_particles_end), f.spacing, f.body_volume, f.sound_speed, f.time_step,
-      f.time_step_term, f.n_steps, f.bytes / 1e6, f.simulate_seconds);
+      f.time_step_term, f.n_steps, f.bytes / 1e6, f.simulate_seconds, f.surface_seconds, f.render_seconds,
+      f.load ? fmt::format("when this machine is idle; now {:.1f} times that", *f.load)
+             : std::string("at this machine's pace now (`./smelt bench --calibrate` on an idle machine makes this independent of what else runs)"));
   for (const std::string& advice : f.advice) fmt::print("advice      {}\n", advice);
 }
 
@@ -161,11 +164,19 @@ struct BenchOptions {
   std::string shot;
   int threads = 0;
   bool json = false;
+  bool calibrate = false;
 };
 
 void add_bench(CLI::App& app, BenchOptions& o, std::function<void()>& work) {
   CLI::App* bench = app.add_subcommand("bench", "how fast this machine is");
-  bench->require_subcommand(1);
+  bench->require_subcommand(0, 1);
+  bench->add_flag("--calibrate", o.calibrate, "remember how fast it is while nothing else runs, for `smelt check`");
+  bench->callback([&o, &work, bench] {
+    if (o.calibrate)
+      work = [] { fmt::print("{:.4g} s for the fixed work, kept in {}\n", calibrate_pace(), pace_file().string()); };
+    else if (bench->get_subcommands().empty())
+      throw CLI::RequiredError("bench: --calibrate or a subcommand");
+  });
   const auto add = [&](const char* name, const char* what, std::function<void()> print) {
     CLI::App* command = bench->add_subcommand(name, what);
     command->add_option("--threads", o.threads, "threads to use; by default all")->check(CLI::Range(1, 4096));

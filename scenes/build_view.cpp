@@ -230,4 +230,15 @@ Camera camera_at(const Scene& scene, const Camera& camera, double time) {
   return between;
 }
 
+RenderOptions to_options(const RenderSettings& s) {
+  RenderOptions options;
+  options.samples = s.samples;
+  options.bounces = s.bounces;
+  options.firefly_limit = static_cast<float>(s.firefly_limit);
+  options.denoise = s.denoise;
+  options.seed = static_cast<std::uint32_t>(s.seed);
+  options.layers = s.exr;
+  return options;
+}
+
 }  // namespace smelt

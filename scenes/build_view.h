@@ -2,6 +2,7 @@
 // From a scene to what the renderer draws around the fluid.
 
 #include "io/body_poses.h"
+#include "render/render_frame.h"
 #include "render/scene_view.h"
 #include "scenes/scene.h"
 
@@ -9,6 +10,9 @@ namespace smelt {
 
 /// Camera, lights, look, ground and colliders; what the scene leaves out is chosen to show its bodies well.
 RenderScene build_view(const Scene& scene);
+
+/// How the pictures are computed.
+RenderOptions to_options(const RenderSettings& settings);
 
 /// Moves the colliders of a view that build_view() made to where they are at `time` [s], and rigid bodies to where
 /// `bodies` has them; `at_rest`: the meshes it gave them.

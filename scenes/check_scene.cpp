@@ -1,8 +1,13 @@
 #include "scenes/check_scene.h"
 
 #include "core/error.h"
+#include "core/geometry/triangle_mesh.h"
 #include "scenes/advise.h"
 #include "scenes/build_simulation.h"
+#include "scenes/build_view.h"
+#include "scenes/machine_pace.h"
+#include "scenes/solver_frame.h"
+#include "surfacing/surface.h"
 
 #include <chrono>
 #include <cmath>
@@ -12,19 +17,46 @@ namespace smelt {
 
 namespace {
 
-/// Something to measure the pace with where nothing is there at the start: a cube of what the first vent pours, that flies on.
-Particles<3> make_trial_block(const SimulationSetup& setup, double n_wanted) {
+void add_poured(const SimulationSetup& setup, const Vec3& position, Particles<3>& particles) {
   const Emitter<3>& e = setup.parameters.emitters.front();
-  const int n = std::max(2, static_cast<int>(std::cbrt(n_wanted)));
-  Particles<3> p;
-  for (int k = 0; k < n * n * n; ++k) {
-    p.id.push_back(k);
-    if (setup.materials.size() > 1) p.material.push_back(e.material);
-    p.position.push_back(e.position + setup.spacing * Vec3(k % n, k / n % n, k / (n * n)));
-    p.velocity.push_back(e.flow_rate / (std::numbers::pi * e.radius * e.radius) * e.direction);
-    p.density.push_back(setup.materials[e.material].density);
-    if (setup.materials[e.material].heat) p.temperature.push_back(e.temperature);
+  particles.id.push_back(static_cast<std::int32_t>(particles.id.size()));
+  if (setup.materials.size() > 1) particles.material.push_back(e.material);
+  particles.position.push_back(position);
+  particles.velocity.push_back(0.5 * e.flow_rate / (std::numbers::pi * e.radius * e.radius) * Vec3::UnitX());
+  particles.density.push_back(setup.materials[e.material].density);
+  if (setup.materials[e.material].heat) particles.temperature.push_back(e.temperature);
+}
+
+/// Where a line straight down from `start` comes within half a spacing of an obstacle, above `lowest`.
+std::optional<Vec3> find_ground(const Colliders<3>& colliders, Vec3 start, double lowest, double spacing) {
+  for (; start.y() > lowest; start.y() -= std::max(0.1 * spacing, colliders.clearance(start, 100.0 * spacing) - 0.5 * spacing))
+    if (colliders.clearance(start, spacing) <= 0.6 * spacing) return start;
+  return std::nullopt;
+}
+
+/// Something to measure the pace with where nothing is there at the start: a layer of what the first vent pours, four particles thick, on the
+/// ground around it, as most of a flow comes to lie; or a cube of it where there is no ground.
+Particles<3> make_trial_particles(const SimulationSetup& setup, const Colliders<3>& colliders, double n_wanted) {
+  constexpr int n_layers = 4;
+  const Emitter<3>& e = setup.parameters.emitters.front();
+  Box3 bounds;
+  for (const TriangleMesh& mesh : setup.colliders) {
+    const Box3 box = compute_bounds(mesh);
+    bounds.extend(box.lower);
+    bounds.extend(box.upper);
   }
+  Particles<3> p;
+  const int half = std::max(1, static_cast<int>(0.5 * std::sqrt(n_wanted / n_layers)));
+  const double top = std::max(bounds.upper.y(), e.position.y()) + setup.spacing;
+  for (int i = -half; i < half && !setup.colliders.empty(); ++i)
+    for (int j = -half; j < half; ++j) {
+      const Vec3 above(e.position.x() + (i + 0.5) * setup.spacing, top, e.position.z() + (j + 0.5) * setup.spacing);
+      const auto ground = find_ground(colliders, above, bounds.lower.y(), setup.spacing);
+      for (int layer = 0; ground && layer < n_layers; ++layer) add_poured(setup, *ground + layer * setup.spacing * Vec3::UnitY(), p);
+    }
+  if (p.size() > 0) return p;
+  const int n = std::max(2, static_cast<int>(std::cbrt(n_wanted)));
+  for (int k = 0; k < n * n * n; ++k) add_poured(setup, e.position + setup.spacing * Vec3(k % n, k / n % n, k / (n * n)), p);
   return p;
 }
 
@@ -35,18 +67,38 @@ double mean_growth(const Scene& scene, const SimulationSetup& setup, double n_st
   return sum / scene.shot.frames / n_trial;
 }
 
+/// What pictures of `particles` cost, at the height of the shot's growth.
+void forecast_pictures(const Scene& scene, const ParticleFrame& particles, double growth, SceneForecast& forecast) {
+  const auto time = [](const auto& run) {
+    const auto start = std::chrono::steady_clock::now();
+    run();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  SurfaceMesh surface;
+  forecast.surface_seconds = scene.shot.frames * growth * time([&] { surface = build_surface(particles, scene.surface); });
+  RenderScene view = build_view(scene);
+  const int width = view.camera.width, height = view.camera.height;
+  const auto time_picture = [&](int part) {
+    view.camera.width = std::max(16, width / part);
+    view.camera.height = std::max(16, height / part);
+    return time([&] { render_film(surface, view, to_options(scene.render), 1); });
+  };
+  // What a picture costs whatever its size, and what a pixel costs.
+  const double small = time_picture(4), larger = time_picture(2);
+  const double per_quarter = std::max(0.0, (larger - small) / 3.0);  // of a sixteenth of the pixels
+  forecast.render_seconds = scene.shot.frames * (small + 15.0 * per_quarter);
+}
+
 template <typename Real>
 void take_trial_steps(const Scene& scene, SimulationSetup& setup, int n_trial_steps, SceneForecast& forecast) {
   SolverParameters<3> parameters = setup.parameters;
   parameters.min_time_step = 0.0;  // a floor too high is something to advise on, not to stop at
-  Colliders<3> colliders;
+  Colliders<3> colliders = build_colliders(setup);
   Particles<3> particles = setup.particles;
   const double n_start = static_cast<double>(particles.size()), n_end = static_cast<double>(forecast.n_particles_end);
-  if (particles.size() > 0) {
-    colliders = build_colliders(setup);
-  } else {
+  if (particles.size() == 0) {
     constexpr double enough = 10000.0;
-    particles = make_trial_block(setup, std::min(n_end, enough));
+    particles = make_trial_particles(setup, colliders, std::min(n_end, enough));
     parameters.emitters.clear();
     parameters.outflows.clear();
     parameters.domain = {};
@@ -55,19 +107,24 @@ void take_trial_steps(const Scene& scene, SimulationSetup& setup, int n_trial_st
   Solver<3, Real> solver(parameters, setup.materials, std::move(colliders), std::move(particles));
   solver.prepare();
   double remaining = 1.0 / scene.shot.fps;
-  const auto start = std::chrono::steady_clock::now();
+  constexpr int n_warm_up = 2;
+  auto start = std::chrono::steady_clock::now();
   int n_steps = 0;
-  for (; n_steps < n_trial_steps && remaining > 0.0; ++n_steps) {
+  for (; n_steps < n_warm_up + n_trial_steps && remaining > 0.0; ++n_steps) {
     const TimeStep step = solver.step(remaining, 1.0 / scene.shot.fps - remaining);
     remaining -= step.dt;
     if (n_steps == 0) {
       forecast.time_step = step.dt;
       forecast.time_step_term = time_step_term_names[static_cast<std::size_t>(step.term)];
     }
+    if (n_steps + 1 == n_warm_up) start = std::chrono::steady_clock::now();
   }
+  const int n_timed = n_steps > n_warm_up ? n_steps - n_warm_up : n_steps;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const double growth = mean_growth(scene, setup, n_start, n_trial);
   forecast.n_steps = std::ceil((scene.shot.frames - 1) / scene.shot.fps / forecast.time_step);
-  forecast.simulate_seconds = forecast.n_steps * seconds / n_steps * mean_growth(scene, setup, n_start, n_trial);
+  forecast.simulate_seconds = forecast.n_steps * seconds / n_timed * growth;
+  forecast_pictures(scene, to_frame(solver, setup.spacing, 1, 0.0), growth, forecast);
 
   const auto& state = solver.particles();
   double state_bytes = 0.0;
@@ -97,6 +154,9 @@ SceneForecast forecast_scene(const Scene& scene, int n_trial_steps) {
     take_trial_steps<double>(scene, setup, n_trial_steps, forecast);
   else
     take_trial_steps<float>(scene, setup, n_trial_steps, forecast);
+  forecast.load = measure_load();
+  if (forecast.load)
+    for (double* seconds : {&forecast.simulate_seconds, &forecast.surface_seconds, &forecast.render_seconds}) *seconds /= *forecast.load;
   forecast.advice = advise(setup, forecast.time_step);
   return forecast;
 }

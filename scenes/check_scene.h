@@ -3,6 +3,7 @@
 
 #include "scenes/scene.h"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,13 +18,19 @@ struct SceneForecast {
   double time_step = 0.0;         ///< at the start [s]
   std::string time_step_term;     ///< what sets it
   double n_steps = 0.0;           ///< in the whole shot, at that time step
-  double simulate_seconds = 0.0;  ///< from the pace of a few steps on this machine, as it is now
+  double simulate_seconds = 0.0;  ///< from the pace of a few steps on this machine
+  double surface_seconds = 0.0;   ///< from the surface of the particles that those steps were made with
+  double render_seconds = 0.0;    ///< from small pictures of it
+  /// The seconds are those of an idle machine, which this one is not: everything takes so many times as long now. Nothing where the machine was
+  /// never calibrated, and the seconds are those of the machine as it is now.
+  std::optional<double> load;
   double bytes = 0.0;             ///< memory of the particles, their neighbour lists and passes
   std::vector<std::string> warnings;
   std::vector<std::string> advice;  ///< settings badly chosen, and what to choose
 };
 
-/// Builds the simulation and takes `n_trial_steps` steps of it; where all particles are poured in later, of a block of them in free flight.
-SceneForecast forecast_scene(const Scene& scene, int n_trial_steps = 20);
+/// Builds the simulation and takes `n_trial_steps` steps of it; where all particles are poured in later, of a layer of them on the ground under the
+/// vent, or of a block of them where there is none. Then surfaces and renders the outcome, at a fraction of its resolution.
+SceneForecast forecast_scene(const Scene& scene, int n_trial_steps = 40);
 
 }  // namespace smelt

@@ -15,17 +15,6 @@ namespace smelt {
 
 namespace {
 
-RenderOptions to_options(const RenderSettings& s) {
-  RenderOptions options;
-  options.samples = s.samples;
-  options.bounces = s.bounces;
-  options.firefly_limit = static_cast<float>(s.firefly_limit);
-  options.denoise = s.denoise;
-  options.seed = static_cast<std::uint32_t>(s.seed);
-  options.layers = s.exr;
-  return options;
-}
-
 bool is_done(const Scene& scene, const OutputFolder& folder, int frame) {
   return all_exist({folder.picture(frame)}) && (!scene.render.exr || all_exist({folder.exr(frame)}));
 }

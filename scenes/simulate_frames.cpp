@@ -1,6 +1,5 @@
 #include "core/error.h"
 #include "core/hash.h"
-#include "core/sph/particle_frame.h"
 #include "io/atomic_file.h"
 #include "io/body_poses.h"
 #include "io/checkpoint.h"
@@ -8,43 +7,18 @@
 #include "scenes/build_simulation.h"
 #include "scenes/rest_positions.h"
 #include "scenes/scene_writer.h"
+#include "scenes/solver_frame.h"
 #include "scenes/stage_frames.h"
 #include "scenes/stages.h"
 #include "scenes/version.h"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 #include <vector>
 
 namespace smelt {
 
 namespace {
-
-/// What the caches of a frame hold, ordered by id.
-template <typename Real>
-ParticleFrame to_frame(const Solver<3, Real>& solver, double spacing, int frame, double time) {
-  const Particles<3>& p = solver.particles();
-  ParticleFrame result;
-  result.spacing = spacing;
-  result.smoothing_length = solver.parameters().smoothing_length;
-  result.mass = solver.mass(0);
-  result.frame = frame;
-  result.time = time;
-  const std::size_t n = p.size();
-  std::vector<std::size_t> by_id(n);
-  std::iota(by_id.begin(), by_id.end(), std::size_t{0});
-  std::sort(by_id.begin(), by_id.end(), [&](std::size_t a, std::size_t b) { return p.id[a] < p.id[b]; });
-  for (const std::size_t i : by_id) {
-    result.id.push_back(p.id[i]);
-    result.position.push_back(p.position[i]);
-    result.velocity.push_back(p.velocity[i].cast<float>());
-    result.density.push_back(static_cast<float>(p.density[i]));
-    if (!p.temperature.empty()) result.temperature.push_back(static_cast<float>(p.temperature[i]));
-    if (!p.viscosity.empty()) result.viscosity.push_back(p.viscosity[i]);
-  }
-  return result;
-}
 
 /// Newest first.
 std::vector<std::filesystem::path> list_checkpoints(const OutputFolder& folder) {
