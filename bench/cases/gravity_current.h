@@ -26,7 +26,7 @@ Obstacle<2> make_plane(const Vec<2>& a, const Vec<2>& b, double friction);
 /// decade in which its depth over its length falls from 1/11 to 1/27.
 Measurement run_plane_current(const Choices& choices);
 
-/// The same in all directions from 10 s, when it is 0.17 times as deep as its radius, to 65 s.
+/// The same in all directions from 10 s, when it is 0.16 times as deep as its radius, to 65 s.
 Measurement run_axisymmetric_current(const Choices& choices);
 
 /// Lava benchmark 1, from rest; fronts at the benchmark's times.
