@@ -30,7 +30,7 @@ struct SceneForecast {
 };
 
 /// Builds the simulation and takes `n_trial_steps` steps of it; where all particles are poured in later, of a layer of them on the ground under the
-/// vent, or of a block of them where there is none. Then surfaces and renders the outcome, at a fraction of its resolution.
-SceneForecast forecast_scene(const Scene& scene, int n_trial_steps = 40);
+/// vent, or of a block of them where there is none. Then, `with_pictures`, surfaces and renders the outcome, in a temporary folder and at a fraction of its resolution.
+SceneForecast forecast_scene(const Scene& scene, int n_trial_steps = 40, bool with_pictures = true);
 
 }  // namespace smelt

@@ -48,7 +48,7 @@ std::filesystem::path pace_file() {
 
 double time_fixed_work() {
   double best = 1e30;
-  for (int run = 0; run < 5; ++run) {
+  for (int run = 0; run < 15; ++run) {
     Solver<3, float> solver = make_fixed_work();
     const auto start = std::chrono::steady_clock::now();
     solver.prepare();

@@ -135,6 +135,8 @@ TEST(EmitterScene, ForecastCountsWhatWillBePoured) {
   EXPECT_EQ(f.n_particles_end, 600u);
   EXPECT_GT(f.bytes, 600.0 * 200.0);
   EXPECT_GT(f.simulate_seconds, 0.0);
+  EXPECT_GT(f.surface_seconds, 0.0);
+  EXPECT_GT(f.render_seconds, 0.0);
 }
 
 // A gate is not drawn any more when it has gone.
