@@ -102,8 +102,8 @@ Case make_flow_case() {
           .error_label = "velocity: L2 error / L2",
           .resolution_label = "particles across the channel",
           .methods = names_of(flow_knobs()),
-          .quick = {20, 40},
-          .full = {20, 40, 60},
+          .quick = {20, 30, 40},
+          .full = {20, 30, 40, 60},
           .run = run_flow};
 }
 
@@ -116,8 +116,8 @@ Case make_surface_case() {
           .error_label = "normals [rad]",
           .resolution_label = "particles across the ball",
           .methods = names_of(surface_knobs()),
-          .quick = {20, 40},
-          .full = {20, 40, 80},
+          .quick = {10, 20, 40},
+          .full = {10, 20, 40, 80},
           .run = run_surface};
 }
 

@@ -1,4 +1,4 @@
-// The first frame of scenes, small, beside pictures that somebody has looked at.
+// A frame of every scene, small, beside pictures that somebody has looked at.
 //
 // Metric: the root mean square over pixels of the distance in Oklab between shown and golden colour (delta E_OK), times 100; 2 is the
 // least difference that is seen side by side. SMELT_UPDATE_GOLDEN=1 writes the pictures of tests/data/golden anew: look at them.
@@ -11,9 +11,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <ostream>
+#include <string>
 
 namespace smelt {
 namespace {
@@ -44,17 +47,38 @@ Difference compare(const ImageRgb8& shown, const ImageRgb8& golden) {
   return d;
 }
 
-class GoldenFrame : public testing::TestWithParam<const char*> {};
+/// A frame of a scene; what pours shows something only later, and coarser.
+struct Shot {
+  std::string scene;
+  int frame = 1;
+  std::string settings = {};
+
+  std::string name() const {
+    std::string name = scene;
+    std::replace(name.begin(), name.end(), '/', '_');
+    return name;
+  }
+};
+
+void PrintTo(const Shot& shot, std::ostream* out) { *out << shot.scene; }
+
+class GoldenFrame : public testing::TestWithParam<Shot> {};
 
 TEST_P(GoldenFrame, LooksAsItDid) {
-  const std::string name = GetParam();
+  const Shot& shot = GetParam();
+  const std::string name = shot.name();
   const fs::path folder = fs::path(testing::TempDir()) / ("smelt_golden_" + name), golden = source_folder() / "tests/data/golden" / (name + ".png");
   fs::remove_all(folder);
-  const std::string command = fmt::format("'{}' run '{}' -o '{}' --frames 1 --set camera.width=192 --set camera.height=108 --set render.samples=8 > '{}' 2>&1",
-                                          SMELT_PROGRAM, (source_folder() / "scenes" / (name + ".toml")).string(), folder.string(),
-                                          (folder.string() + ".log"));
-  ASSERT_EQ(std::system(command.c_str()), 0) << folder << ".log";
-  const ImageRgb8 shown = read_png(folder / "frames/frame.0001.png");
+  const auto run = [&](const std::string& verb, int first) {
+    const std::string command = fmt::format(
+        "'{}' {} '{}' -o '{}' --frames {}-{} --set camera.width=192 --set camera.height=108 --set render.samples=8 {} > '{}' 2>&1", SMELT_PROGRAM, verb,
+        (source_folder() / "scenes" / (shot.scene + ".toml")).string(), folder.string(), first, shot.frame, shot.settings, folder.string() + ".log");
+    ASSERT_EQ(std::system(command.c_str()), 0) << folder << ".log";
+  };
+  run("simulate", 1);
+  run("surface", shot.frame);
+  run("render", shot.frame);
+  const ImageRgb8 shown = read_png(folder / "frames" / fmt::format("frame.{:04}.png", shot.frame));
   if (std::getenv("SMELT_UPDATE_GOLDEN") != nullptr) {
     write_png(golden, shown);
     GTEST_SKIP() << "wrote " << golden;
@@ -68,8 +92,12 @@ TEST_P(GoldenFrame, LooksAsItDid) {
   EXPECT_LT(difference.metric, 1.0) << "the difference is in " << kept << ", the picture in " << folder;
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, GoldenFrame, testing::Values("melting_bunny", "chair_hand"),
-                         [](const auto& test) { return std::string(test.param); });
+// The rest of scenes/thesis are links to these.
+INSTANTIATE_TEST_SUITE_P(Scenes, GoldenFrame,
+                         testing::Values(Shot{"melting_bunny"}, Shot{"chair_hand"}, Shot{"candle"}, Shot{"lava_volcano", 60, "--set particles.spacing_m=6"},
+                                         Shot{"lava_sugarloaf", 40, "--set particles.spacing_m=8"}, Shot{"thesis/wall"}, Shot{"thesis/hand"}, Shot{"thesis/candle"},
+                                         Shot{"thesis/gargoyle"}, Shot{"thesis/letters", 1, "--set camera.height=77"}, Shot{"thesis/terrain", 40, "--set particles.spacing_m=6"}),
+                         [](const auto& test) { return test.param.name(); });
 
 TEST(GoldenMetric, SeesAShiftAndOnlyThat) {
   ImageRgb8 a{4, 1, {{10, 20, 30}, {90, 90, 90}, {200, 10, 10}, {255, 255, 255}}}, b = a;
