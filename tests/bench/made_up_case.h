@@ -2,6 +2,7 @@
 // A case that takes no time and whose error is known.
 
 #include "bench/cases/case.h"
+#include "bench/report/gnuplot.h"
 #include "bench/report/suite.h"
 #include "core/error.h"
 
@@ -30,6 +31,16 @@ inline Case made_up_case(const std::string& name) {
             measured.profile = Profile{{{0.0, 1.0}, {0.0, 2.0}}, {{0.0, 1.0}, {0.0, 2.5}}};
             return measured;
           }};
+}
+
+/// Whether plots can be drawn here.
+inline bool has_gnuplot() {
+  try {
+    check_gnuplot();
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
 }
 
 /// What the suite makes of cases, in the order in which they end.

@@ -14,17 +14,9 @@
 namespace smelt {
 namespace {
 
+using test::has_gnuplot;
 using test::made_up_case;
 using test::run_cases;
-
-bool has_gnuplot() {
-  try {
-    check_gnuplot();
-    return true;
-  } catch (const Error&) {
-    return false;
-  }
-}
 
 std::size_t count(const std::string& text, const std::string& what) {
   std::size_t n = 0;
