@@ -22,8 +22,8 @@ constexpr double skin = 0.17;             // smoothing lengths: as the step benc
 // Additions, multiplications, comparisons, divisions and roots of one pair in the loops, the reduction at a row's end left out.
 constexpr double rates_flops = 6 + 5 + 13 + 7 + 33 + 31 + 20;
 constexpr double forces_flops = 6 + 5 + 13 + 15 + 27 + 40;
-// The first cache line of a record, or both, and an index.
-constexpr double rates_bytes = 64 + 4, forces_bytes = 128 + 4;
+// The first cache line of a record, or both, and a place in a run.
+constexpr double rates_bytes = 64 + 1, forces_bytes = 128 + 1;
 
 struct Block {
   Fields fields;
@@ -48,7 +48,7 @@ Block make_jittered_block(std::size_t n_particles) {
   std::vector<Vec3> sorted;
   for (const std::int32_t k : compute_cell_order<3>(position, id, reach)) sorted.push_back(position[static_cast<std::size_t>(k)]);
   build_neighbour_lists<3>(sorted, reach, reach, pair_lanes<float>, block.lists);
-  for (const std::int32_t count : block.lists.count) block.n_pairs += count;
+  for (std::size_t i = 0; i < block.n; ++i) block.n_pairs += static_cast<double>(block.lists.row(i).size());
   block.fields.stride = Fields::stride_of(true);
   block.fields.records.resize(block.n * static_cast<std::size_t>(block.fields.stride));
   for (float& value : block.fields.records) value = static_cast<float>(1.0 + jitter(random));

@@ -29,13 +29,23 @@ void parallel_for_each(std::size_t n, const Body& body) {
   });
 }
 
-/// Reduces map(i) over [0, n) in a tree that depends on n alone, so that sums round the same way on any number of threads.
+/// Reduces map(begin, end), of blocks of up to block_size, over [0, n) in a tree that depends on n alone, so that sums round the same way on any
+/// number of threads.
 template <typename Value, typename Map, typename Join>
-Value deterministic_reduce(std::size_t n, const Value& identity, const Map& map, const Join& join) {
+Value deterministic_reduce_blocks(std::size_t n, const Value& identity, const Map& map, const Join& join) {
   return tbb::parallel_deterministic_reduce(
       tbb::blocked_range<std::size_t>(0, n, block_size), identity,
-      [&](const tbb::blocked_range<std::size_t>& range, Value value) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) value = join(value, map(i));
+      [&](const tbb::blocked_range<std::size_t>& range, const Value& value) { return join(value, map(range.begin(), range.end())); }, join);
+}
+
+/// The same of map(i).
+template <typename Value, typename Map, typename Join>
+Value deterministic_reduce(std::size_t n, const Value& identity, const Map& map, const Join& join) {
+  return deterministic_reduce_blocks(
+      n, identity,
+      [&](std::size_t begin, std::size_t end) {
+        Value value = identity;
+        for (std::size_t i = begin; i < end; ++i) value = join(value, map(i));
         return value;
       },
       join);

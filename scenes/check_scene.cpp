@@ -165,10 +165,10 @@ void take_trial_steps(const Scene& scene, SimulationSetup& setup, int n_trial_st
     if (!values.empty()) state_bytes += static_cast<double>(values.size() * sizeof(values[0]));
   });
   const double n = static_cast<double>(state.size());
-  const double pass_bytes = n * (PairFields<3, Real>::stride_of(true) + 3.0) * sizeof(Real) +
-                            n * sizeof(RateSums<3, Real>) + 3.0 * n * sizeof(Vec3);
+  using Balance = HeatBalance<3, Real>;
+  const double derived_bytes = PairFields<3, Real>::stride_of(true) * sizeof(Real) + 3.0 * sizeof(typename Solver<3, Real>::RealVec) + sizeof(Balance) + 4.0 * sizeof(double);
   const auto list_bytes = static_cast<double>(solver.neighbours().n_bytes());
-  forecast.bytes = (state_bytes + pass_bytes + list_bytes) * std::max(1.0, n_end / n);
+  forecast.bytes = (state_bytes + n * derived_bytes + list_bytes) * std::max(1.0, n_end / n);
 }
 
 }  // namespace

@@ -5,8 +5,9 @@
 
 #include <tbb/parallel_sort.h>
 
-#include <array>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace smelt {
@@ -35,18 +36,7 @@ struct CellFrame {
 
 template <int Dim>
 CellFrame<Dim> make_cell_frame(std::span<const Vec<Dim>> position, double cell_size) {
-  const Box<Dim> bounds = deterministic_reduce(
-      position.size(), Box<Dim>{},
-      [&](std::size_t i) {
-        Box<Dim> box;
-        box.extend(position[i]);
-        return box;
-      },
-      [](Box<Dim> a, const Box<Dim>& b) {
-        a.lower = a.lower.cwiseMin(b.lower);
-        a.upper = a.upper.cwiseMax(b.upper);
-        return a;
-      });
+  const Box<Dim> bounds = bounds_of<Dim>(position);
   const double cells = bounds.extent().maxCoeff() / cell_size;
   if (!(cells < static_cast<double>(max_cells - 3)))
     throw InternalError(fmt::format("neighbour search: the particles span {} cells of {} m", cells, cell_size));
@@ -62,10 +52,12 @@ class CellTable {
     std::int32_t end;
   };
 
-  explicit CellTable(const std::vector<std::uint64_t>& keys) {
-    const auto n = static_cast<std::int32_t>(keys.size());
+  template <int Dim>
+  CellTable(std::span<const Vec<Dim>> position, const CellFrame<Dim>& frame) {
+    const auto n = static_cast<std::int32_t>(position.size());
     for (std::int32_t i = 0; i < n; ++i) {
-      if (cells_.empty() || cells_.back().key != keys[i]) cells_.push_back({keys[i], i, i});
+      const std::uint64_t key = frame.key(position[i]);
+      if (cells_.empty() || cells_.back().key != key) cells_.push_back({key, i, i});
       cells_.back().end = i + 1;
     }
     std::size_t capacity = 16;
@@ -95,52 +87,109 @@ class CellTable {
   std::size_t mask_ = 0;
 };
 
-/// Particle ranges of the 3^Dim cells around a cell, in key order.
+/// Particles [begin, end) that lie next to one another.
+struct Run {
+  std::int32_t begin, end;
+};
+
+/// The particles of the 3^Dim cells around a cell, joined to as few runs as can be.
 template <int Dim>
-int find_ranges(const CellTable& table, std::uint64_t key, std::array<CellTable::Cell, 27>& ranges) {
+std::vector<Run> find_runs(const CellTable& table, std::uint64_t key) {
   constexpr int n_around = Dim == 1 ? 3 : Dim == 2 ? 9 : 27;
-  int n = 0;
+  std::vector<Run> cells;
+  cells.reserve(n_around);
   for (int k = 0; k < n_around; ++k) {
     const std::uint64_t dx = k % 3, dy = Dim > 1 ? k / 3 % 3 : 1, dz = Dim > 2 ? k / 9 : 1;
     std::uint64_t around = key + dx - 1;
     if constexpr (Dim > 1) around += (dy - 1) << bits_per_axis;
     if constexpr (Dim > 2) around += (dz - 1) << (2 * bits_per_axis);
-    if (const CellTable::Cell* cell = table.find(around)) ranges[n++] = *cell;
+    if (const CellTable::Cell* cell = table.find(around)) cells.push_back({cell->begin, cell->end});
   }
-  return n;
+  std::sort(cells.begin(), cells.end(), [](const Run& a, const Run& b) { return a.begin < b.begin; });
+  std::vector<Run> runs;
+  for (const Run& cell : cells) {
+    if (!runs.empty() && runs.back().end == cell.begin)
+      runs.back().end = cell.end;
+    else
+      runs.push_back(cell);
+  }
+  return runs;
 }
 
-/// What cells are sorted by. In 3D, rods of 4 x 4 cells along x one after another: what the particles of a few cells have in reach then lies
-/// in a core's own cache however many particles there are.
+/// In pieces of which each particle's place fits a byte.
+std::vector<Run> split_runs(const std::vector<Run>& runs) {
+  std::vector<Run> pieces;
+  for (const Run& run : runs)
+    for (std::int32_t begin = run.begin; begin < run.end; begin += NeighbourLists::max_run)
+      pieces.push_back({begin, std::min(run.end, begin + NeighbourLists::max_run)});
+  return pieces;
+}
+
+/// What cells are sorted by. In 3D, rods of 8 x 4 cells along x one after another: what the particles of a few cells have in reach then lies
+/// in a core's own cache however many particles there are, in a dozen runs.
 template <int Dim>
 std::uint64_t rank_cell(std::uint64_t key) {
   if constexpr (Dim < 3) return key;
-  constexpr int bits_in_rod = 2;
-  constexpr std::uint64_t axis_mask = max_cells - 1, rod_mask = (1 << bits_in_rod) - 1;
+  constexpr int y_bits = 3, z_bits = 2;
+  constexpr std::uint64_t axis_mask = max_cells - 1, y_mask = (1 << y_bits) - 1, z_mask = (1 << z_bits) - 1;
   const std::uint64_t x = key & axis_mask, y = (key >> bits_per_axis) & axis_mask, z = key >> (2 * bits_per_axis);
-  std::uint64_t rank = z >> bits_in_rod;
-  rank = (rank << (bits_per_axis - bits_in_rod)) | (y >> bits_in_rod);
+  std::uint64_t rank = z >> z_bits;
+  rank = (rank << (bits_per_axis - y_bits)) | (y >> y_bits);
   rank = (rank << bits_per_axis) | x;
-  rank = (rank << bits_in_rod) | (z & rod_mask);
-  return (rank << bits_in_rod) | (y & rod_mask);
+  rank = (rank << z_bits) | (z & z_mask);
+  return (rank << y_bits) | (y & y_mask);
 }
 
+/// Appends the row of particle `i` to `bytes`; returns how many neighbours it has.
 template <int Dim>
-std::vector<std::uint64_t> compute_keys(std::span<const Vec<Dim>> position, double cell_size) {
-  const CellFrame<Dim> frame = make_cell_frame<Dim>(position, cell_size);
-  std::vector<std::uint64_t> keys(position.size());
-  parallel_for_each(position.size(), [&](std::size_t i) { keys[i] = frame.key(position[i]); });
-  return keys;
+std::size_t append_row(std::span<const Vec<Dim>> position, double radius2, const std::vector<Run>& runs, std::int32_t i, std::vector<std::uint8_t>& bytes) {
+  std::size_t n_candidates = 0;
+  for (const Run& run : runs) n_candidates += static_cast<std::size_t>(run.end - run.begin);
+  const std::size_t start = bytes.size();
+  bytes.resize(start + runs.size() + n_candidates + 1);
+  std::uint8_t* count = bytes.data() + start;
+  std::uint8_t* const first = count + runs.size();
+  std::uint8_t* place = first;
+  const Vec<Dim> x = position[i];
+  for (const Run& run : runs) {
+    const std::uint8_t* before = place;
+    // Branch-free: every candidate is written, only near ones are kept.
+    for (std::int32_t j = run.begin; j < run.end; ++j) {
+      *place = static_cast<std::uint8_t>(j - run.begin);
+      place += (x - position[j]).squaredNorm() < radius2 && j != i;
+    }
+    *count++ = static_cast<std::uint8_t>(place - before);
+  }
+  const auto n = static_cast<std::size_t>(place - first);
+  bytes.resize(start + runs.size() + n);
+  return n;
 }
 
 }  // namespace
 
 template <int Dim>
-std::vector<std::int32_t> compute_cell_order(std::span<const Vec<Dim>> position, std::span<const std::int32_t> id,
-                                             double cell_size) {
-  std::vector<std::uint64_t> ranks = compute_keys<Dim>(position, cell_size);
-  for (std::uint64_t& rank : ranks) rank = rank_cell<Dim>(rank);
-  std::vector<std::int32_t> order(position.size());
+Box<Dim> bounds_of(std::span<const Vec<Dim>> position) {
+  return deterministic_reduce(
+      position.size(), Box<Dim>{},
+      [&](std::size_t i) {
+        Box<Dim> box;
+        box.extend(position[i]);
+        return box;
+      },
+      [](Box<Dim> a, const Box<Dim>& b) {
+        a.lower = a.lower.cwiseMin(b.lower);
+        a.upper = a.upper.cwiseMax(b.upper);
+        return a;
+      });
+}
+
+template <int Dim>
+std::pmr::vector<std::int32_t> compute_cell_order(std::span<const Vec<Dim>> position, std::span<const std::int32_t> id, double cell_size,
+                                                  std::pmr::memory_resource* memory) {
+  const CellFrame<Dim> frame = make_cell_frame<Dim>(position, cell_size);
+  std::pmr::vector<std::uint64_t> ranks(position.size(), memory);
+  parallel_for_each(position.size(), [&](std::size_t i) { ranks[i] = rank_cell<Dim>(frame.key(position[i])); });
+  std::pmr::vector<std::int32_t> order(position.size(), memory);
   std::iota(order.begin(), order.end(), 0);
   tbb::parallel_sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
     return ranks[a] != ranks[b] ? ranks[a] < ranks[b] : id[a] < id[b];
@@ -152,56 +201,59 @@ template <int Dim>
 void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, double cell_size, int row_multiple,
                            NeighbourLists& lists) {
   CHECK_GE(cell_size, radius);
-  const std::size_t n = position.size();
-  const CellTable table(compute_keys<Dim>(position, cell_size));
+  const CellTable table(position, make_cell_frame<Dim>(position, cell_size));
   const auto& cells = table.cells();
-  const double radius2 = radius * radius;
+  constexpr std::size_t cells_per_block = NeighbourLists::cells_per_block;
   lists.row_multiple = row_multiple;
-  lists.begin.resize(n);
-  lists.count.resize(n);
-  constexpr std::size_t cells_per_block = 32;
+  lists.names.clear();
+  lists.places.resize(position.size());
   lists.blocks.resize((cells.size() + cells_per_block - 1) / cells_per_block);
+  std::vector<std::size_t> longest(lists.blocks.size(), 0);
   parallel_blocks(
       lists.blocks.size(),
-      [&](std::size_t block, std::size_t) {
-        thread_local std::vector<std::int32_t> found;
-        found.clear();
-        const std::size_t end = std::min(cells.size(), (block + 1) * cells_per_block);
-        std::array<CellTable::Cell, 27> ranges;
-        for (std::size_t c = block * cells_per_block; c < end; ++c) {
-          const int n_ranges = find_ranges<Dim>(table, cells[c].key, ranges);
-          std::size_t n_candidates = 0;
-          for (int k = 0; k < n_ranges; ++k) n_candidates += static_cast<std::size_t>(ranges[k].end - ranges[k].begin);
+      [&](std::size_t b, std::size_t) {
+        NeighbourLists::Block& block = lists.blocks[b];
+        block.run_begin.clear();
+        thread_local std::vector<std::uint8_t> bytes;
+        bytes.clear();
+        for (std::size_t k = 0; k < cells_per_block; ++k) {
+          block.first_run[k] = static_cast<std::uint32_t>(block.run_begin.size());
+          const std::size_t c = b * cells_per_block + k;
+          if (c >= cells.size()) continue;
+          const std::vector<Run> runs = split_runs(find_runs<Dim>(table, cells[c].key));
+          for (const Run& run : runs) block.run_begin.push_back(run.begin);
           for (std::int32_t i = cells[c].begin; i < cells[c].end; ++i) {
-            const std::size_t start = found.size();
-            found.resize(start + n_candidates + static_cast<std::size_t>(row_multiple));
-            std::int32_t* out = found.data() + start;
-            // Branch-free: every candidate is written, only near ones are kept.
-            for (int k = 0; k < n_ranges; ++k) {
-              for (std::int32_t j = ranges[k].begin; j < ranges[k].end; ++j) {
-                *out = j;
-                out += (position[i] - position[j]).squaredNorm() < radius2 && j != i;
-              }
-            }
-            const auto count = static_cast<std::size_t>(out - (found.data() + start));
-            std::fill(out, out + (lists.padded(count) - count), i);
-            lists.count[i] = static_cast<std::int32_t>(count);
-            found.resize(start + lists.padded(count));
+            CHECK_LE(bytes.size(), std::numeric_limits<std::uint32_t>::max());
+            lists.places[i] = {static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(bytes.size())};
+            longest[b] = std::max(longest[b], append_row<Dim>(position, radius * radius, runs, i, bytes));
           }
         }
-        lists.blocks[block].assign(found.begin(), found.end());
-        const std::int32_t* row = lists.blocks[block].data();
-        for (std::int32_t i = cells[block * cells_per_block].begin; i < cells[end - 1].end; ++i) {
-          lists.begin[i] = row;
-          row += lists.padded(static_cast<std::size_t>(lists.count[i]));
-        }
+        block.first_run.back() = static_cast<std::uint32_t>(block.run_begin.size());
+        bytes.resize(bytes.size() + NeighbourLists::step);
+        block.bytes.assign(bytes.begin(), bytes.end());
       },
       1);
+  lists.longest = longest.empty() ? 0 : *std::max_element(longest.begin(), longest.end());
 }
 
-template std::vector<std::int32_t> compute_cell_order<1>(std::span<const Vec<1>>, std::span<const std::int32_t>, double);
-template std::vector<std::int32_t> compute_cell_order<2>(std::span<const Vec<2>>, std::span<const std::int32_t>, double);
-template std::vector<std::int32_t> compute_cell_order<3>(std::span<const Vec<3>>, std::span<const std::int32_t>, double);
+std::size_t NeighbourLists::n_bytes() const {
+  std::size_t n = places.size() * sizeof(places[0]) + blocks.size() * sizeof(Block) + names.size() * sizeof(names[0]);
+  for (const Block& block : blocks) n += block.run_begin.size() * sizeof(block.run_begin[0]) + block.bytes.size();
+  return n;
+}
+
+std::vector<std::int32_t> NeighbourLists::row(std::size_t i) const {
+  std::vector<std::int32_t> buffer(room());
+  buffer.resize(read(i, buffer.data()).neighbours.size());
+  return buffer;
+}
+
+template Box<1> bounds_of<1>(std::span<const Vec<1>>);
+template std::pmr::vector<std::int32_t> compute_cell_order<1>(std::span<const Vec<1>>, std::span<const std::int32_t>, double, std::pmr::memory_resource*);
+template Box<2> bounds_of<2>(std::span<const Vec<2>>);
+template std::pmr::vector<std::int32_t> compute_cell_order<2>(std::span<const Vec<2>>, std::span<const std::int32_t>, double, std::pmr::memory_resource*);
+template Box<3> bounds_of<3>(std::span<const Vec<3>>);
+template std::pmr::vector<std::int32_t> compute_cell_order<3>(std::span<const Vec<3>>, std::span<const std::int32_t>, double, std::pmr::memory_resource*);
 template void build_neighbour_lists<1>(std::span<const Vec<1>>, double, double, int, NeighbourLists&);
 template void build_neighbour_lists<2>(std::span<const Vec<2>>, double, double, int, NeighbourLists&);
 template void build_neighbour_lists<3>(std::span<const Vec<3>>, double, double, int, NeighbourLists&);

@@ -3,48 +3,94 @@
 
 #include "core/geometry/vec.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
 namespace smelt {
 
-/// The neighbours of each particle, itself left out, in the order of the grid's cells. Each row is padded with the particle itself to a
-/// multiple of `row_multiple`: its pair with itself has x_ij = 0 and adds exactly nothing to any sum over differences. Rows lie in blocks, as
-/// the search makes them: joining them would take a second copy of what is most of a simulation's memory.
+/// The neighbours of each particle, itself left out, in a byte each: these rows are most of what a simulation keeps in memory. What the particles
+/// of a grid cell may have in reach lies in a few runs of particles next to one another, the same for all of them. A row says for each run how
+/// many of its particles are neighbours, then which, counted from the run's first.
 struct NeighbourLists {
-  std::vector<std::vector<std::int32_t>> blocks;
-  std::vector<const std::int32_t*> begin;  ///< of each particle's row, in one of the blocks
-  std::vector<std::int32_t> count;         ///< of neighbours, without the padding
+  static constexpr std::size_t cells_per_block = 32;
+  static constexpr std::int32_t max_run = 255;  ///< particles: places in a run and counts of them fit a byte
+  static constexpr std::size_t step = 16;       ///< places that are read at once; a block ends in as many that nobody means
+
+  /// The rows of a number of cells, as the search makes them: one thread a block.
+  struct Block {
+    std::array<std::uint32_t, cells_per_block + 1> first_run{};  ///< of each cell among `run_begin`
+    std::vector<std::int32_t> run_begin;                         ///< the first particle of each run
+    std::vector<std::uint8_t> bytes;
+  };
+  /// Where the row of a particle is.
+  struct Place {
+    std::uint32_t cell, byte;
+  };
+  /// A row spelled out. It is padded with the particle itself to a multiple of `row_multiple`: its pair with itself has x_ij = 0 and adds
+  /// exactly nothing to any sum over differences.
+  struct Row {
+    std::span<const std::int32_t> neighbours, padded;
+  };
+
+  std::vector<Block> blocks;
+  std::vector<Place> places;
+  std::vector<std::int32_t> names;  ///< what the indices that follow from the runs stand for; empty: the particles of these numbers
+  std::size_t longest = 0;          ///< row, in neighbours
   int row_multiple = 1;
 
-  NeighbourLists() = default;
-  NeighbourLists(NeighbourLists&&) = default;
-  NeighbourLists& operator=(NeighbourLists&&) = default;
-  NeighbourLists(const NeighbourLists&) = delete;  // `begin` points into `blocks`
-  NeighbourLists& operator=(const NeighbourLists&) = delete;
+  std::size_t size() const { return places.size(); }
+  std::size_t n_bytes() const;
+  /// Entries that a buffer for any row needs.
+  std::size_t room() const { return longest + static_cast<std::size_t>(row_multiple) + step; }
 
-  std::size_t size() const { return count.size(); }
-  std::span<const std::int32_t> row(std::size_t i) const { return {begin[i], static_cast<std::size_t>(count[i])}; }
-  /// With the padding.
-  std::span<const std::int32_t> padded_row(std::size_t i) const { return {begin[i], padded(static_cast<std::size_t>(count[i]))}; }
-  std::size_t padded(std::size_t n) const {
+  /// The row of particle `i`, written to `buffer`, which has room for it.
+  Row read(std::size_t i, std::int32_t* buffer) const {
+    const Block& block = blocks[places[i].cell / cells_per_block];
+    const std::size_t cell = places[i].cell % cells_per_block;
+    const std::uint32_t first_run = block.first_run[cell], end_run = block.first_run[cell + 1];
+    const std::uint8_t* count = block.bytes.data() + places[i].byte;
+    const std::uint8_t* place = count + (end_run - first_run);
+    std::int32_t* end = buffer;
+    for (std::uint32_t run = first_run; run < end_run; ++run, ++count) {
+      // A whole step each time, most often the only one: what is beyond a run's last the next run overwrites.
+      spell_out(block.run_begin[run], place, end);
+      for (std::size_t done = step; done < *count; done += step) spell_out(block.run_begin[run], place + done, end + done);
+      end += *count;
+      place += *count;
+    }
+    const auto n = static_cast<std::size_t>(end - buffer);
+    for (std::size_t k = 0; k < n && !names.empty(); ++k) buffer[k] = names[static_cast<std::size_t>(buffer[k])];
     const auto multiple = static_cast<std::size_t>(row_multiple);
-    return (n + multiple - 1) / multiple * multiple;
+    const std::size_t n_padded = (n + multiple - 1) / multiple * multiple;
+    std::fill(end, buffer + n_padded, static_cast<std::int32_t>(i));
+    return {{buffer, n}, {buffer, n_padded}};
   }
-  std::size_t n_bytes() const {
-    std::size_t n = begin.size() * sizeof(begin[0]) + count.size() * sizeof(count[0]);
-    for (const auto& block : blocks) n += block.size() * sizeof(block[0]);
-    return n;
+
+  /// The neighbours of particle `i`, where time does not matter.
+  std::vector<std::int32_t> row(std::size_t i) const;
+
+ private:
+  static void spell_out(std::int32_t begin, const std::uint8_t* place, std::int32_t* out) {
+    std::array<std::uint8_t, step> places;  // of its own: bytes might be anything, even what is written
+    std::copy_n(place, step, places.begin());
+    for (std::size_t k = 0; k < step; ++k) out[k] = begin + places[k];
   }
 };
 
+/// The box around all of them [m].
+template <int Dim>
+Box<Dim> bounds_of(std::span<const Vec<Dim>> position);
+
 /// A permutation that puts particles of one grid cell (edge `cell_size` [m]) next to one another, cells near one another where they
-/// can be, particles of a cell by id: it depends on positions and ids only, not on the order they come in.
+/// can be, particles of a cell by id: it depends on positions and ids only, not on the order they come in. It takes 12 bytes a particle from `memory`.
 /// Throws InternalError where a position is not finite or the grid would need more than 2^21 cells along an axis.
 template <int Dim>
-std::vector<std::int32_t> compute_cell_order(std::span<const Vec<Dim>> position, std::span<const std::int32_t> id,
-                                             double cell_size);
+std::pmr::vector<std::int32_t> compute_cell_order(std::span<const Vec<Dim>> position, std::span<const std::int32_t> id, double cell_size,
+                                                  std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 /// All pairs with |x_ij| < radius. `position` must be in the order of compute_cell_order with cell_size >= radius.
 template <int Dim>

@@ -40,6 +40,7 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   constexpr int stride = Fields::stride_of(with_stress);
   [[maybe_unused]] const auto least_balance = hn::Set(d, Real(0.2)), most_balance = hn::Set(d, Real(1.8));
   [[maybe_unused]] const auto one = hn::Set(d, Real(1)), least_sum = hn::Set(d, Real(1e-30));
+  std::vector<std::int32_t> buffer(lists.room());
   for (std::size_t i = begin; i < end; ++i) {
     const Real* record_i = records + i * stride;
     [[maybe_unused]] const auto inverse_density_i = hn::Set(d, 1 / record_i[Fields::density_at]);
@@ -98,7 +99,7 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
       }
     };
     Real total[At::n_sums];
-    sum_row(lists.padded_row(i), total, add_pairs);
+    sum_row(lists.read(i, buffer.data()).padded, total, add_pairs);
 
     RateSums<Dim, Real>& out = sums[i - begin];
     out.density_rate = total[At::density_rate];
@@ -130,6 +131,7 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
   const auto damping = hn::Set(d, static_cast<Real>(2.0 * parameters.artificial_viscosity * parameters.sound_speed * h));
   [[maybe_unused]] const auto hourglass = hn::Set(d, static_cast<Real>(2 * (Dim + 2)));
   const auto one = hn::Set(d, Real(1));
+  std::vector<std::int32_t> buffer(lists.room());
   for (std::size_t i = begin; i < end; ++i) {
     const Real* record_i = records + i * stride;
     const auto density_i = hn::Set(d, record_i[Fields::density_at]);
@@ -176,7 +178,7 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
       }
     };
     Real total[n_sums];
-    sum_row(lists.padded_row(i), total, add_pairs);
+    sum_row(lists.read(i, buffer.data()).padded, total, add_pairs);
     for (int a = 0; a < Dim; ++a) {
       acceleration[i - begin][a] = total[a];
       if constexpr (with_stress)
@@ -197,6 +199,7 @@ void gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& l
   const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
   const auto alpha = hn::Set(d, static_cast<Real>(parameters.artificial_viscosity));
   const auto two_beta = hn::Set(d, static_cast<Real>(2.0 * parameters.quadratic_artificial_viscosity));
+  std::vector<std::int32_t> buffer(lists.room());
   for (std::size_t i = begin; i < end; ++i) {
     const Real* record_i = records + i * stride;
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
@@ -217,7 +220,7 @@ void gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& l
       sum[Dim] = hn::MulAdd(weight, v_x, sum[Dim]);
     };
     Real total[Dim + 1];  // the force and the energy
-    sum_row(lists.padded_row(i), total, add_pairs);
+    sum_row(lists.read(i, buffer.data()).padded, total, add_pairs);
     std::copy_n(total, Dim, acceleration[i - begin].begin());
     energy_rate[i - begin] = Real(0.5) * total[Dim];
   }
@@ -229,9 +232,11 @@ void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lis
   const Tag<Real> d;
   const PairKernel kernel(h);
   using Fields = PairFields<Dim, Real>;
+  std::vector<std::int32_t> buffer(lists.room());
   for (std::size_t i = begin; i < end; ++i) {
     const Real* record_i = fields.record(i);
-    const std::int32_t* row_end = lists.begin[i] + lists.count[i];
+    const NeighbourLists::Row row = lists.read(i, buffer.data());
+    const std::int32_t* row_end = row.neighbours.data() + row.neighbours.size();
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
       const Neighbours<Dim, Real> pair(record_i, fields.records.data(), fields.stride, index);
       // The padding is the particle itself, whose W is not nothing: it counts once, below.
@@ -242,7 +247,7 @@ void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lis
       sum[1] = hn::Add(volume_w, sum[1]);
     };
     Real total[2];
-    sum_row(lists.padded_row(i), total, add_pairs);
+    sum_row(row.padded, total, add_pairs);
     const Real self = record_i[Fields::volume_at] * hn::GetLane(kernel.value(hn::Zero(d)));
     sums[i - begin].mass = total[0] + record_i[Fields::density_at] * self;
     sums[i - begin].volume = total[1] + self;

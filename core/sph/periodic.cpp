@@ -83,23 +83,11 @@ PeriodicImages<Dim> build_periodic_neighbour_lists(const Box<Dim>& period, std::
     sorted[k] = all[order[k]];
     sorted_from[order[k]] = static_cast<std::int32_t>(k);
   }
-  NeighbourLists of_all;
-  build_neighbour_lists<Dim>(sorted, radius, radius, row_multiple, of_all);
-
-  lists.row_multiple = row_multiple;
-  lists.begin.resize(n);
-  lists.count.resize(n);
-  lists.blocks.assign(1, {});
-  std::vector<std::int32_t>& index = lists.blocks.front();
-  std::size_t total = 0;
-  for (std::size_t i = 0; i < n; ++i) total += of_all.padded_row(static_cast<std::size_t>(sorted_from[i])).size();
-  index.reserve(total);  // rows do not move from here on
-  for (std::size_t i = 0; i < n; ++i) {
-    const auto from = static_cast<std::size_t>(sorted_from[i]);
-    lists.begin[i] = index.data() + index.size();
-    lists.count[i] = of_all.count[from];
-    for (const std::int32_t k : of_all.padded_row(from)) index.push_back(order[k]);
-  }
+  build_neighbour_lists<Dim>(sorted, radius, radius, row_multiple, lists);
+  std::vector<NeighbourLists::Place> places(n);
+  for (std::size_t i = 0; i < n; ++i) places[i] = lists.places[static_cast<std::size_t>(sorted_from[i])];
+  lists.places = std::move(places);
+  lists.names.assign(order.begin(), order.end());
   return images;
 }
 

@@ -22,6 +22,7 @@ void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const Neighbour
   const Tag<Real> d;
   const PairKernel kernel(h);
   using Fields = PairFields<Dim, Real>;
+  std::vector<std::int32_t> buffer(lists.room());
   for (std::size_t i = begin; i < end; ++i) {
     const Real* record_i = fields.record(i);
     // The gradient is first, then the moment.
@@ -41,7 +42,7 @@ void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const Neighbour
       }
     };
     Real total[Dim + n_symmetric<Dim>];
-    sum_row(lists.padded_row(i), total, add_pairs);
+    sum_row(lists.read(i, buffer.data()).padded, total, add_pairs);
     std::copy_n(total, Dim, sums[i - begin].gradient.begin());
     std::copy_n(total + Dim, n_symmetric<Dim>, sums[i - begin].moment.begin());
   }
@@ -56,6 +57,7 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
   using Fields = PairFields<Dim, Real>;
   const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
   const auto half = hn::Set(d, Real(0.5));
+  std::vector<std::int32_t> buffer(lists.room());
   for (std::size_t i = begin; i < end; ++i) {
     const Real* record_i = fields.record(i);
     const Real* gradient_i = gradients.data() + i * stride;
@@ -74,7 +76,7 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
       sum[0] = hn::NegMulAdd(weight, unexplained, sum[0]);
     };
     Real total[1];
-    sum_row(lists.padded_row(i), total, add_pairs);
+    sum_row(lists.read(i, buffer.data()).padded, total, add_pairs);
     sums[i - begin] = 2 * total[0];
   }
 }

@@ -4,25 +4,19 @@
 #include "core/parallel.h"
 #include "core/sph/gradient_correction.h"
 #include "core/sph/kernel.h"
+#include "core/sph/reorder.h"
 #include "core/sph/stress_update.h"
 #include "core/sph/wall_terms.h"
 
 #include <algorithm>
 #include <cmath>
+#include <memory_resource>
 #include <numbers>
 #include <utility>
 
 namespace smelt {
 
 namespace {
-
-template <typename T>
-void reorder(std::vector<T>& values, const std::vector<std::int32_t>& order) {
-  if (values.empty()) return;
-  std::vector<T> sorted(values.size());
-  parallel_for_each(values.size(), [&](std::size_t i) { sorted[i] = values[order[i]]; });
-  values.swap(sorted);
-}
 
 bool inviscid(const Rheology& r) {
   return is_zero(r.yield_stress) && is_zero(r.consistency);
@@ -34,6 +28,13 @@ HeatTerms heat_terms(const std::vector<Material>& materials) {
   if (std::none_of(materials.begin(), materials.end(), conducts)) return HeatTerms::none;
   const auto like_first = [&](const Material& m) { return m.heat && materials.front().heat && conductivity(m) == conductivity(materials.front()); };
   return std::all_of(materials.begin(), materials.end(), like_first) ? HeatTerms::uniform : HeatTerms::mixed;
+}
+
+template <int Dim, typename Real>
+Mat<Dim> unpack(const std::array<Real, n_symmetric<Dim>>& packed) {
+  Symmetric<Dim> values;
+  for (int k = 0; k < n_symmetric<Dim>; ++k) values[k] = packed[static_cast<std::size_t>(k)];
+  return to_matrix<Dim>(values);
 }
 
 /// Radius of the sphere (disc, segment) of a particle's volume  [P 5-11].
@@ -103,13 +104,10 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
 template <int Dim, typename Real>
 void Solver<Dim, Real>::resize_derived() {
   const std::size_t n = particles_.size();
-  acceleration_.resize(n, Vec<Dim>::Zero());
-  rates_.resize(n);
+  acceleration_.resize(n, RealVec::Zero());
   if (terms_.gas) energy_rate_.resize(n);
   if (terms_.pair.has_heat()) heat_balance_.resize(n);
-  if (terms_.pair.xsph) transport_.resize(n, Vec<Dim>::Zero());
-  if (terms_.pair.xsph) xsph_.resize(n, Vec<Dim>::Zero());
-  if (walls_ || (terms_.diffusion && terms_.pair.stress)) pressure_gradient_.resize(n, Vec<Dim>::Zero());
+  if (terms_.pair.xsph) transport_.resize(n, RealVec::Zero());
   if (!colliders_.empty()) clearance_.resize(n, 0.0);
   if (terms_.exchange) free_surface_area_.resize(n, 0.0);
 }
@@ -126,10 +124,9 @@ void Solver<Dim, Real>::prepare(double time) {
   if (walls_) walls_->update(colliders_, particles_.position);
   if (terms_.exchange) find_free_surface();
   heat_ledger_ = {};
-  pack_motion(particles_.velocity);
+  pack_motion(false);
   sum_densities();
-  evaluate_rates();
-  integrate_rates(0.0);
+  advance_rates(0.0, time);
   evaluate_forces();
 }
 
@@ -164,12 +161,9 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
   end_stage(StepStage::wall_sums);
 
   // Density, heat and stress change with the velocity that moved the particles.
-  pack_motion(terms_.pair.xsph ? transport_ : particles_.velocity);
+  pack_motion(terms_.pair.xsph);
   sum_densities();
-  evaluate_rates();
-  if (terms_.pair.has_heat()) integrate_heat(dt, time + dt);
-  integrate_rates(dt);
-  end_stage(StepStage::rheology);
+  advance_rates(dt, time + dt);
   evaluate_forces();
   kick(0.5 * dt);
   end_stage(StepStage::kick);
@@ -195,31 +189,34 @@ void Solver<Dim, Real>::search_neighbours(double skin) {
   skin_ = skin;
   const double radius = list_reach(skin);
   if (terms_.periodic) wrap_positions<Dim>(parameters_.period, particles_.position);
-  const auto order = compute_cell_order<Dim>(particles_.position, particles_.id, radius);
-  for_each_array(particles_, [&](auto& values) { reorder(values, order); });
-  reorder(transport_, order);
-  reorder(heat_balance_, order);
+  // The records are packed anew after a search: until then their memory is free, with one more record for what alignment takes.
+  const std::size_t n = particles_.size();
+  fields_.records.resize((n + 1) * static_cast<std::size_t>(fields_.stride));
+  const std::span<std::byte> scratch = std::as_writable_bytes(std::span(fields_.records));
+  const std::size_t for_order = n * (sizeof(std::uint64_t) + sizeof(std::int32_t)) + 64;
+  std::pmr::monotonic_buffer_resource memory(scratch.data(), for_order);
+  const auto order = compute_cell_order<Dim>(particles_.position, particles_.id, radius, &memory);
+  const auto reorder = [&](auto& values) { smelt::reorder(values, order, scratch.subspan(for_order)); };
+  for_each_array(particles_, reorder);
+  reorder(transport_);
+  reorder(heat_balance_);
   if (terms_.periodic) std::fill(clearance_.begin(), clearance_.end(), 0.0);  // of places across the box
-  reorder(clearance_, order);
-  reorder(free_surface_area_, order);
-  // The rates of the last step look half a kick ahead (pack_gas), or say what gradient balances them (pack_gradients).
-  if (terms_.gas || terms_.diffusion) reorder(acceleration_, order);
-  if (terms_.gas) reorder(energy_rate_, order);
+  reorder(clearance_);
+  reorder(free_surface_area_);
+  // The rates of the last step look half a kick ahead (pack_gas), or say what gradient balances them (evaluate_pressure_gradients).
+  if (terms_.gas || terms_.diffusion) reorder(acceleration_);
+  if (terms_.gas) reorder(energy_rate_);
+  // In a periodic box particles came from across it.
+  if (walls_ && terms_.periodic) walls_->reset(n);
+  if (walls_ && !terms_.periodic) walls_->reorder(order, scratch.subspan(for_order));
   if (terms_.periodic)
     images_ = build_periodic_neighbour_lists<Dim>(parameters_.period, particles_.position, particles_.id, radius, pair_lanes<Real>, lists_);
   else
     build_neighbour_lists<Dim>(particles_.position, radius, radius, pair_lanes<Real>, lists_);
   // The middle of the particles: what single precision resolves there is relative to their extent.
-  Box<Dim> bounds;
-  for (const auto& x : particles_.position) bounds.extend(x);
-  origin_ = bounds.centre();
+  origin_ = bounds_of<Dim>(particles_.position).centre();
   travelled_ = 0.0;
   ++n_searches_;
-  if (!walls_) return;
-  if (terms_.periodic)
-    walls_->reset(particles_.size());  // particles came from across the box
-  else
-    walls_->reorder(order);
 }
 
 // ------------------------------------------------------------------------------------------------------ rates and forces
@@ -255,94 +252,116 @@ void Solver<Dim, Real>::set_summed_densities(bool normalise) {
   copy_records_to_images();
 }
 
+/// The first pass over pairs, and what follows from its sums particle by particle, block after block, so that the sums live no longer than a
+/// block does: density, heat and stress advance by dt to `time`. With dt = 0 nothing advances, but the stress of a law without memory and
+/// the XSPH correction follow from the state.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::evaluate_rates() {
-  end_stage(StepStage::rates);  // their records
+void Solver<Dim, Real>::advance_rates(double dt, double time) {
+  end_stage(StepStage::records);
   if (walls_ || terms_.diffusion) evaluate_pressure_gradients();
-  end_stage(StepStage::wall_rates);
-  parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
-    compute_rate_sums<Dim, Real>(fields_, lists_, terms_.pair, parameters_.smoothing_length, begin, end, rates_.data() + begin);
-  });
-  if (terms_.diffusion) apply_density_diffusion();
+  end_stage(StepStage::gradients);
+  match_driven_densities();
+  if (terms_.exchange && dt > 0.0) find_source_powers(time);
+  heat_ledger_ += deterministic_reduce_blocks(
+      particles_.size(), HeatLedger{}, [&](std::size_t begin, std::size_t end) { return advance_block(begin, end, dt, time); },
+      [](HeatLedger a, const HeatLedger& b) { return a += b; });
   end_stage(StepStage::rates);
-  if (walls_)
-    parallel_for_each(walls_->neighbours().size(), [&](std::size_t k) { apply_wall_rates(walls_->neighbours()[k]); });
-  end_stage(StepStage::wall_rates);
+  parallel_for_each(particles_.size(), [&](std::size_t i) { terms_.gas ? pack_gas(i, dt) : pack_forces(i); });
+  copy_records_to_images();
+  end_stage(StepStage::records);
 }
 
-/// Near walls; everywhere where density diffuses in a fluid with a stress (pack_gradients).
+/// Particles [begin, end), block_size at most; returns the heat that passed through surface and walls.
+template <int Dim, typename Real>
+HeatLedger Solver<Dim, Real>::advance_block(std::size_t begin, std::size_t end, double dt, double time) {
+  std::array<RateSums<Dim, Real>, block_size> rates;
+  compute_rate_sums<Dim, Real>(fields_, lists_, terms_.pair, parameters_.smoothing_length, begin, end, rates.data());
+  if (terms_.diffusion) add_density_diffusion(begin, end, rates.data());
+  HeatLedger passed;
+  for (std::size_t i = begin; i < end; ++i) {
+    RateSums<Dim, Real>& rate = rates[i - begin];
+    if (const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr) add_wall_rates(*wall, rate);
+    Mat<Dim> correction = Mat<Dim>::Zero();
+    if (terms_.pair.stress || terms_.pair.has_heat()) correction = compute_gradient_correction<Dim>(unpack<Dim, Real>(rate.position_moment));
+    if (terms_.pair.has_heat()) {
+      if (dt > 0.0) passed += advance_heat(i, rate.heat, dt, time);
+      heat_balance_[i] = balance_heat<Dim, Real>(rate, correction);
+    }
+    if (terms_.pair.stress) advance_stress(i, dt, correction, rate);
+    if (parameters_.density == DensityForm::continuity && !is_driven(i)) particles_.density[i] += dt * rate.density_rate;
+    if (terms_.pair.xsph)
+      for (int a = 0; a < Dim; ++a) transport_[i][a] = static_cast<Real>(parameters_.xsph) * rate.xsph[a];
+  }
+  return passed;
+}
+
+/// Near walls; everywhere where density diffuses in a fluid with a stress. Where nothing but pressure (and artificial viscosity) acts, the
+/// fluid's motion says what gradient there must be for the diffusion, rho (gravity - a), as in [Rhie & Chow 1983]: the corrected gradient follows
+/// an error of the pressure where that is smooth, over two or three spacings at a wall, and would leave it alone for seconds. A stress
+/// would take part in a.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::evaluate_pressure_gradients() {
+  constexpr std::size_t stride = gradient_stride<Dim>;
+  const std::size_t n = particles_.size();
+  const auto pack = [&](std::size_t i, const Vec<Dim>& gradient) {
+    for (int a = 0; a < Dim; ++a) packed_gradient_[i * stride + static_cast<std::size_t>(a)] = static_cast<Real>(gradient[a]);
+  };
+  const bool everywhere = terms_.diffusion && terms_.pair.stress;
   const auto evaluate = [&](std::size_t begin, std::size_t end) {
     std::array<PressureGradientSums<Dim, Real>, block_size> sums;
     compute_pressure_gradient_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end, sums.data());
-    for (std::size_t i = begin; i < end; ++i)
-      pressure_gradient_[i] = compute_pressure_gradient<Dim, Real>(sums[i - begin], walls_ ? walls_->of(i) : nullptr,
-                                                                   particles_.density[i], parameters_.gravity);
+    for (std::size_t i = begin; i < end; ++i) {
+      const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr;
+      const Vec<Dim> gradient = compute_pressure_gradient<Dim, Real>(sums[i - begin], wall, particles_.density[i], parameters_.gravity);
+      if (wall) wall_gradient_[walls_->slot(*wall)] = gradient;
+      if (everywhere) pack(i, gradient);
+    }
   };
-  if (terms_.diffusion && terms_.pair.stress)
-    parallel_blocks(particles_.size(), evaluate);
+  if (walls_) wall_gradient_.resize(walls_->neighbours().size());
+  if (terms_.diffusion) packed_gradient_.resize((n + images_.size()) * stride);
+  if (everywhere)
+    parallel_blocks(n, evaluate);
   else if (walls_)
     parallel_for_each(walls_->neighbours().size(), [&](std::size_t k) {
       const auto i = static_cast<std::size_t>(walls_->neighbours()[k].particle);
       evaluate(i, i + 1);
     });
+  if (!terms_.diffusion) return;
+  if (!everywhere)
+    parallel_for_each(n, [&](std::size_t i) {
+      pack(i, particles_.density[i] * (parameters_.gravity - acceleration_[i].template cast<double>()));
+    });
+  for (std::size_t k = 0; k < images_.size(); ++k)
+    std::copy_n(packed_gradient_.data() + stride * static_cast<std::size_t>(images_.source[k]), stride, packed_gradient_.data() + stride * (n + k));
 }
 
 /// drho_i/dt += delta h c sum ..., where p/c^2 stands for the density.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::apply_density_diffusion() {
-  pack_gradients();
+void Solver<Dim, Real>::add_density_diffusion(std::size_t begin, std::size_t end, RateSums<Dim, Real>* rates) const {
   const double strength = parameters_.density_diffusion * parameters_.smoothing_length / parameters_.sound_speed;
-  parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
-    std::array<Real, block_size> sums;
-    compute_pressure_diffusion_sums<Dim, Real>(fields_, packed_gradient_, lists_, parameters_.kernel, parameters_.smoothing_length, begin,
-                                               end, sums.data());
-    for (std::size_t i = begin; i < end; ++i) rates_[i].density_rate += static_cast<Real>(strength * sums[i - begin]);
-  });
+  std::array<Real, block_size> sums;
+  compute_pressure_diffusion_sums<Dim, Real>(fields_, packed_gradient_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end,
+                                             sums.data());
+  for (std::size_t k = 0; k < end - begin; ++k) rates[k].density_rate += static_cast<Real>(strength * sums[k]);
 }
 
 template <int Dim, typename Real>
-void Solver<Dim, Real>::apply_wall_rates(const WallNeighbour<Dim>& wall) {
+void Solver<Dim, Real>::add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<Dim, Real>& rate) const {
   using Fields = PairFields<Dim, Real>;
   const auto i = static_cast<std::size_t>(wall.particle);
   Vec<Dim> velocity;  // the one that the pair sums were made with
   for (int a = 0; a < Dim; ++a) velocity[a] = fields_.record(i)[Fields::velocity_at + a];
   accumulate_wall_rates<Dim, Real>(wall, colliders_, terms_.pair, velocity, particles_.density[i], material(i).density,
                                    terms_.pair.has_heat() ? particles_.temperature[i] : 0.0,
-                                   terms_.pair.has_heat() ? heat_balance_[i].moment_trace : 1.0, rates_[i]);
+                                   terms_.pair.has_heat() ? static_cast<double>(heat_balance_[i].moment_trace) : 1.0, rate);
 }
 
-/// With dt = 0 nothing advances, but the stress of a law without memory and the XSPH correction follow from the state.
+/// Advances the extra stress S and packs S L for the force pass; `correction` is L.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::integrate_rates(double dt) {
-  match_driven_densities();
-  parallel_for_each(particles_.size(), [&](std::size_t i) {
-    const RateSums<Dim, Real>& rate = rates_[i];
-    if (terms_.pair.has_heat()) heat_balance_[i] = balance_heat<Dim, Real>(rate);
-    Mat<Dim> corrected_stress = Mat<Dim>::Zero();
-    if (terms_.pair.stress) corrected_stress = integrate_stress(i, dt);
-    if (parameters_.density == DensityForm::continuity && !is_driven(i))
-      particles_.density[i] += dt * rate.density_rate;
-    if (terms_.pair.xsph)
-      for (int a = 0; a < Dim; ++a) xsph_[i][a] = parameters_.xsph * rate.xsph[a];
-    if (terms_.gas)
-      pack_gas(i, dt);
-    else
-      pack_forces(i, corrected_stress);
-  });
-  copy_records_to_images();
-}
-
-/// Advances the extra stress S and returns S L for the force pass.
-template <int Dim, typename Real>
-Mat<Dim> Solver<Dim, Real>::integrate_stress(std::size_t i, double dt) {
-  Symmetric<Dim> moment;
-  for (int k = 0; k < n_symmetric<Dim>; ++k) moment[k] = rates_[i].position_moment[k];
-  const Mat<Dim> correction = compute_gradient_correction<Dim>(to_matrix<Dim>(moment));
+void Solver<Dim, Real>::advance_stress(std::size_t i, double dt, const Mat<Dim>& correction, RateSums<Dim, Real>& rate) {
   Mat<Dim> bare_gradient;
   for (int a = 0; a < Dim; ++a)
-    for (int b = 0; b < Dim; ++b) bare_gradient(a, b) = rates_[i].velocity_moment[a * Dim + b];
+    for (int b = 0; b < Dim; ++b) bare_gradient(a, b) = rate.velocity_moment[a * Dim + b];
   const Mat<Dim> gradient = bare_gradient * correction;
   if ((!terms_.relaxed || dt > 0.0) && !is_driven(i)) {
     const Material& m = material(i);
@@ -358,8 +377,8 @@ Mat<Dim> Solver<Dim, Real>::integrate_stress(std::size_t i, double dt) {
   if (terms_.pair.hourglass) pack_hourglass(i, gradient);
   // What the bare divergence misses where neighbours are missing; that of the walls, mirrored, stays (docs/decisions/0008-walls.md).
   if (parameters_.corrected_divergence)
-    rates_[i].density_rate -= static_cast<Real>(particles_.density[i] * (gradient.trace() - bare_gradient.trace()));
-  return to_matrix<Dim>(particles_.stress[i]) * correction;
+    rate.density_rate -= static_cast<Real>(particles_.density[i] * (gradient.trace() - bare_gradient.trace()));
+  pack_stress(i, to_matrix<Dim>(particles_.stress[i]) * correction);
 }
 
 template <int Dim, typename Real>
@@ -373,7 +392,7 @@ void Solver<Dim, Real>::evaluate_forces() {
     else
       compute_force_sums<Dim, Real>(fields_, lists_, terms_.pair, force, begin, end, sums.data());
     for (std::size_t i = begin; i < end; ++i)
-      for (int a = 0; a < Dim; ++a) acceleration_[i][a] = sums[i - begin][a] + parameters_.gravity[a];
+      for (int a = 0; a < Dim; ++a) acceleration_[i][a] = static_cast<Real>(sums[i - begin][a] + parameters_.gravity[a]);
   });
   end_stage(StepStage::forces);
   if (walls_) {
@@ -398,13 +417,15 @@ void Solver<Dim, Real>::apply_wall_forces(std::size_t slot) {
   if (terms_.pair.stress)
     for (int a = 0; a < Dim; ++a)
       for (int b = 0; b < Dim; ++b) corrected_stress(a, b) = fields_.record(i)[PairFields<Dim, Real>::stress_at + a * Dim + b];
+  Vec<Dim> acceleration = acceleration_[i].template cast<double>();
   for (const WallContact<Dim>& contact : wall.contacts) {
     const PlacedObstacle<Dim>& placed = colliders_.placed()[contact.obstacle];
     const Vec<Dim> a = contact_acceleration<Dim>(contact, placed.obstacle.response, particles_.density[i], pressure(i),
-                                                 corrected_stress, pressure_gradient_[i], parameters_.gravity);
-    acceleration_[i] += a;
+                                                 corrected_stress, wall_gradient_[slot], parameters_.gravity);
+    acceleration += a;
     if (placed.body) body_forces_[slot * colliders_.placed().size() + contact.obstacle] -= mass(i) * a;
   }
+  acceleration_[i] = acceleration.template cast<Real>();
 }
 
 /// What the fluid at walls does to rigid bodies, at the particles' places, so that body and fluid together keep their
@@ -429,7 +450,7 @@ void Solver<Dim, Real>::sum_body_loads() {
 
 template <int Dim, typename Real>
 void Solver<Dim, Real>::kick(double dt) {
-  parallel_for_each(particles_.size(), [&](std::size_t i) { particles_.velocity[i] += dt * acceleration_[i]; });
+  parallel_for_each(particles_.size(), [&](std::size_t i) { particles_.velocity[i] += dt * acceleration_[i].template cast<double>(); });
   if (terms_.gas)
     parallel_for_each(particles_.size(), [&](std::size_t i) { particles_.internal_energy[i] += dt * energy_rate_[i]; });
   if (colliders_.has_bodies()) colliders_.kick_bodies(parameters_.gravity, dt);
@@ -484,7 +505,7 @@ Vec<Dim> Solver<Dim, Real>::drift_particle(std::size_t i, double radius, double 
   Vec<Dim>& velocity = particles_.velocity[i];
   // XSPH moves particles with a smoothed velocity and leaves the velocity itself alone  [Monaghan 1989].
   Vec<Dim> transport = velocity;
-  if (terms_.pair.xsph && !is_driven(i)) transport += xsph_[i];
+  if (terms_.pair.xsph && !is_driven(i)) transport += transport_[i].template cast<double>();
   const Vec<Dim> before = particles_.position[i];
   if (colliders_.empty() || is_driven(i)) {
     particles_.position[i] += dt * transport;
@@ -494,7 +515,7 @@ Vec<Dim> Solver<Dim, Real>::drift_particle(std::size_t i, double radius, double 
     move_particle(i, radius, dt, transport, hits ? &of_particle : nullptr);
     for (const BodyHit<Dim>& hit : of_particle) hits->push_back({static_cast<std::int32_t>(i), hit});
   }
-  if (terms_.pair.xsph) transport_[i] = transport;
+  if (terms_.pair.xsph) transport_[i] = transport.template cast<Real>();
   const Vec<Dim> way = particles_.position[i] - before;
   if (walls_) walls_->travel(i, way.norm());
   return way;

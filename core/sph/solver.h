@@ -73,18 +73,18 @@ struct SolverTerms {
 
 /// What a step is made of, for timing.
 enum class StepStage : std::uint8_t {
-  kick,           ///< both halves, and the choice of the step
-  drift,          ///< with the swept collision
-  search,         ///< for neighbours, where it was due
-  wall_sums,      ///< which facets each particle sees, and the integrals over them
-  rates,          ///< the first pass over pairs
-  wall_rates,     ///< what walls add to it, the pressure's gradient near them included
-  rheology,       ///< stress, density and heat advance
-  forces,         ///< the second pass over pairs
-  wall_forces,    ///< what walls add to it
-  watch           ///< particles that come and go, and whether the state is sound
+  kick,         ///< both halves, and the choice of the step
+  drift,        ///< with the swept collision
+  search,       ///< for neighbours, where it was due
+  wall_sums,    ///< which facets each particle sees, and the integrals over them
+  records,      ///< what the passes over pairs read, packed twice
+  gradients,    ///< of the pressure, where walls or density diffusion ask for them
+  rates,        ///< the first pass over pairs, what walls add to it, and by it density, heat and stress
+  forces,       ///< the second pass over pairs
+  wall_forces,  ///< what walls add to it
+  watch         ///< particles that come and go, and whether the state is sound
 };
-inline constexpr std::array step_stage_names{"kick", "drift", "search", "wall sums", "rates", "wall rates", "rheology", "forces", "wall forces", "watch"};
+inline constexpr std::array step_stage_names{"kick", "drift", "search", "wall sums", "records", "gradients", "rates", "forces", "wall forces", "watch"};
 
 /// A particle that hit a rigid body.
 template <int Dim>
@@ -98,6 +98,9 @@ struct ParticleHit {
 template <int Dim, typename Real>
 class Solver {
  public:
+  /// What follows from sums over pairs has no more digits than those.
+  using RealVec = Eigen::Matrix<Real, Dim, 1>;
+
   /// Throws Error where the parameters cannot be (non-positive lengths or densities, a periodic box too short; an ideal gas that is
   /// viscous, conducts heat, meets walls or has an adiabatic index of 1 or less; density diffusion of a gas or of a summed density; no
   /// particles and no emitter; latent heat, emissivity, an ambient or sources without specific heat). The particles of an ideal gas bring
@@ -108,7 +111,7 @@ class Solver {
 
   /// The state, in the order of the last neighbour search.
   const Particles<Dim>& particles() const { return particles_; }
-  const std::vector<Vec<Dim>>& acceleration() const { return acceleration_; }  ///< [m/s^2], same order
+  const std::vector<RealVec>& acceleration() const { return acceleration_; }  ///< [m/s^2], same order
   /// Indices from the number of particles on name periodic images.
   const NeighbourLists& neighbours() const { return lists_; }
   std::size_t n_searches() const { return n_searches_; }  ///< for neighbours, so far
@@ -155,28 +158,28 @@ class Solver {
   double least_skin() const { return parameters_.skin.value_or(0.08); }
   void search_neighbours(double skin);
   void pack_heat(std::size_t i, double largest_conductivity, Real* record) const;
-  void pack_motion(const std::vector<Vec<Dim>>& velocity);
+  void pack_motion(bool with_transport);
   void pack_gas(std::size_t i, double dt);
-  void pack_gradients();
   void copy_records_to_images();
   void sum_densities();
   void set_summed_densities(bool normalise);
-  void evaluate_rates();
+  void advance_rates(double dt, double time);
+  HeatLedger advance_block(std::size_t begin, std::size_t end, double dt, double time);
   void evaluate_pressure_gradients();
-  void apply_density_diffusion();
-  void apply_wall_rates(const WallNeighbour<Dim>& wall);
+  void add_density_diffusion(std::size_t begin, std::size_t end, RateSums<Dim, Real>* rates) const;
+  void add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<Dim, Real>& rate) const;
+  void advance_stress(std::size_t i, double dt, const Mat<Dim>& correction, RateSums<Dim, Real>& rate);
   void apply_wall_forces(std::size_t slot);
   void sum_body_loads();
   double pressure(std::size_t i) const;
   void set_up_heat();
   void find_free_surface();
-  void integrate_heat(double dt, double time);
-  HeatLedger advance_heat(std::size_t i, double dt, double time);
+  void find_source_powers(double time);
+  HeatLedger advance_heat(std::size_t i, double conducted, double dt, double time);
   double exchange_heat(std::size_t i, double dt, double time, double target, HeatLedger& passed) const;
   SurfaceExchange surface_exchange(std::size_t i, double time) const;
-  void integrate_rates(double dt);
-  Mat<Dim> integrate_stress(std::size_t i, double dt);
-  void pack_forces(std::size_t i, const Mat<Dim>& corrected_stress);
+  void pack_forces(std::size_t i);
+  void pack_stress(std::size_t i, const Mat<Dim>& corrected_stress);
   void pack_hourglass(std::size_t i, const Mat<Dim>& velocity_gradient);
   void evaluate_forces();
   void kick(double dt);
@@ -222,20 +225,19 @@ class Solver {
   std::vector<double> clearance_;  ///< at least so far is each particle from all obstacles [m]; empty without any
   std::vector<DensitySums<Real>> density_sums_;  ///< empty where density follows the continuity equation
   std::optional<Walls<Dim>> walls_;  ///< absent where no obstacle is a wall
-  std::vector<Vec<Dim>> pressure_gradient_;  ///< [Pa/m]; like the next, empty without walls and density diffusion
-  std::vector<Real> packed_gradient_;                           ///< the same for the pair loops
+  std::vector<Vec<Dim>> wall_gradient_;  ///< of the pressure at each wall neighbour [Pa/m]
+  std::vector<Real> packed_gradient_;    ///< of the pressure for the diffusion of density; empty without it
   std::vector<double> free_surface_area_;
   std::vector<double> power_density_;  ///< of each heat source of given power at weight 1, at this step [W/m^(Dim - 1)]
   HeatLedger heat_ledger_;
-  std::vector<RateSums<Dim, Real>> rates_;
-  std::vector<HeatBalance<Dim>> heat_balance_;  ///< empty without heat
-  std::vector<Vec<Dim>> acceleration_;
+  std::vector<HeatBalance<Dim, Real>> heat_balance_;  ///< empty without heat
+  std::vector<RealVec> acceleration_;
   std::vector<Real> energy_rate_;  ///< of an ideal gas [W/kg], or empty
   std::vector<Vec<Dim>>
       body_forces_;  ///< on each obstacle by each wall neighbour [N]; like the next, empty without rigid bodies
   std::vector<std::vector<ParticleHit<Dim>>> body_hits_;  ///< of the last drift, in blocks of particles
-  std::vector<Vec<Dim>> transport_;  ///< velocity that particles move with: XSPH's where it is on, else empty
-  std::vector<Vec<Dim>> xsph_;       ///< correction at the last rate evaluation, or empty
+  /// What XSPH adds to the velocity that particles move with, from the rates on; that velocity itself, from the drift on [m/s]. Empty without.
+  std::vector<RealVec> transport_;
 };
 
 }  // namespace smelt

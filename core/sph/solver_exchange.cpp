@@ -3,6 +3,7 @@
 #include "core/parallel.h"
 #include "core/sph/enthalpy.h"
 #include "core/sph/kernel.h"
+#include "core/sph/reorder.h"
 #include "core/sph/rheology.h"
 #include "core/sph/solver.h"
 
@@ -10,18 +11,6 @@
 #include <limits>
 
 namespace smelt {
-
-namespace {
-
-/// Keeps the entries that `keep` names, in order.
-template <typename T>
-void keep_only(std::vector<T>& values, const std::vector<std::int32_t>& keep) {
-  if (values.empty()) return;
-  for (std::size_t k = 0; k < keep.size(); ++k) values[k] = values[static_cast<std::size_t>(keep[k])];
-  values.resize(keep.size());
-}
-
-}  // namespace
 
 /// Refuses what open boundaries cannot go with, and starts the account of a simulation that has some.
 template <int Dim, typename Real>
@@ -120,11 +109,11 @@ bool Solver<Dim, Real>::remove_outflow() {
   if (keep.size() == particles_.size()) return false;
   for_each_array(particles_, [&](auto& values) { keep_only(values, keep); });
   keep_only(acceleration_, keep);  // the first half of the next kick, and the drift after it
-  keep_only(xsph_, keep);
+  keep_only(transport_, keep);
   keep_only(heat_balance_, keep);
   keep_only(clearance_, keep);
   keep_only(free_surface_area_, keep);
-  if (walls_) walls_->reorder(keep);
+  if (walls_) walls_->keep(keep);
   return true;
 }
 

@@ -79,46 +79,39 @@ void Solver<Dim, Real>::find_free_surface() {
                                   free_surface_area_);
 }
 
-/// rho c_p dT/dt = div(c_p rho0 k grad T): the factor rho0/rho makes the exchange symmetric, so that sum m c_p T is kept. The free surface
-/// comes in implicitly, so that it is stable for any area and heat capacity.
+/// Of sources of given power, over the surface that they reach now.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::integrate_heat(double dt, double time) {
-  const std::size_t n = particles_.size();
-  if (!terms_.ledger) {
-    parallel_for_each(n, [&](std::size_t i) {
-      if (is_driven(i)) return;
-      const Material& m = material(i);
-      particles_.temperature[i] += dt * m.heat->diffusivity * m.density / particles_.density[i] * rates_[i].heat;
-    });
-    return;
-  }
+void Solver<Dim, Real>::find_source_powers(double time) {
   power_density_.assign(parameters_.heat_sources.size(), 0.0);
   for (std::size_t k = 0; k < power_density_.size(); ++k) {
     const HeatSource<Dim>& source = parameters_.heat_sources[k];
     if (!source.power || !source.burns_at(time)) continue;
     const double weighted_area = deterministic_reduce(
-        n, 0.0, [&](std::size_t i) { return free_surface_area_[i] * source.weight_at(particles_.position[i], time); },
+        particles_.size(), 0.0, [&](std::size_t i) { return free_surface_area_[i] * source.weight_at(particles_.position[i], time); },
         [](double a, double b) { return a + b; });
     if (weighted_area > 0.0) power_density_[k] = *source.power / weighted_area;
   }
-  heat_ledger_ += deterministic_reduce(
-      n, HeatLedger{}, [&](std::size_t i) { return advance_heat(i, dt, time); },
-      [](HeatLedger a, const HeatLedger& b) { return a += b; });
 }
 
-/// One particle over one step, unless a vent drives it; returns what passed through the surface and the walls.
+/// rho c_p dT/dt = div(c_p rho0 k grad T), `conducted` the sum over pairs: the factor rho0/rho makes the exchange symmetric, so that
+/// sum m c_p T is kept. The free surface comes in implicitly, so that it is stable for any area and heat capacity. What a vent drives keeps
+/// its heat. Returns what passed through the surface and the walls.
 template <int Dim, typename Real>
-HeatLedger Solver<Dim, Real>::advance_heat(std::size_t i, double dt, double time) {
+HeatLedger Solver<Dim, Real>::advance_heat(std::size_t i, double conducted, double dt, double time) {
   const Material& m = material(i);
   const HeatProperties& heat = *m.heat;
-  const double per_rate = dt * conductivity(m) / particles_.density[i];  // of specific enthalpy
   HeatLedger passed;
   if (is_driven(i)) return passed;
+  if (!terms_.ledger) {
+    particles_.temperature[i] += dt * heat.diffusivity * m.density / particles_.density[i] * conducted;
+    return passed;
+  }
+  const double per_rate = dt * conductivity(m) / particles_.density[i];  // of specific enthalpy
   if (const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr)
     passed.to_walls = -mass(i) * per_rate * wall_heat<Dim>(*wall, colliders_, particles_.temperature[i]) / heat_balance_[i].moment_trace;
 
   const double before = terms_.latent_heat ? particles_.enthalpy[i] : heat.specific_heat * (particles_.temperature[i] - heat.cold);
-  double after = before + per_rate * rates_[i].heat;
+  double after = before + per_rate * conducted;
   if (terms_.exchange && free_surface_area_[i] > 0.0) after = exchange_heat(i, dt, time, after, passed);
   if (terms_.latent_heat) {
     particles_.enthalpy[i] = after;

@@ -15,12 +15,12 @@ void Solver<Dim, Real>::pack_heat(std::size_t i, double largest_conductivity, Re
       static_cast<Real>(particles_.temperature[i] - (materials_.front().heat ? materials_.front().heat->cold : 0.0));
   record[Fields::conductivity_at] =
       static_cast<Real>(largest_conductivity > 0.0 && m.heat ? conductivity(m) / largest_conductivity : 0.0);
-  record[Fields::inverse_trace_at] = static_cast<Real>(1.0 / heat_balance_[i].moment_trace);
-  for (int a = 0; a < Dim; ++a) record[Fields::balance_at + a] = static_cast<Real>(heat_balance_[i].lambda[a]);
+  record[Fields::inverse_trace_at] = 1 / heat_balance_[i].moment_trace;
+  for (int a = 0; a < Dim; ++a) record[Fields::balance_at + a] = heat_balance_[i].lambda[a];
 }
 
 template <int Dim, typename Real>
-void Solver<Dim, Real>::pack_motion(const std::vector<Vec<Dim>>& velocity) {
+void Solver<Dim, Real>::pack_motion(bool with_transport) {
   using Fields = PairFields<Dim, Real>;
   const std::size_t n = particles_.size();
   fields_.records.resize((n + images_.size()) * static_cast<std::size_t>(fields_.stride));
@@ -32,7 +32,8 @@ void Solver<Dim, Real>::pack_motion(const std::vector<Vec<Dim>>& velocity) {
     Real* record = fields_.record(i);
     const Vec<Dim> x = particles_.position[i] - origin_;
     for (int a = 0; a < Dim; ++a) record[a] = static_cast<Real>(x[a]);
-    for (int a = 0; a < Dim; ++a) record[Fields::velocity_at + a] = static_cast<Real>(velocity[i][a]);
+    const RealVec velocity = with_transport ? transport_[i] : RealVec(particles_.velocity[i].template cast<Real>());
+    for (int a = 0; a < Dim; ++a) record[Fields::velocity_at + a] = velocity[a];
     record[Fields::volume_at] = static_cast<Real>(mass(i) / particles_.density[i]);
     record[Fields::density_at] = static_cast<Real>(particles_.density[i]);
     if (terms_.pair.has_heat()) pack_heat(i, largest_conductivity, record);
@@ -60,9 +61,9 @@ double Solver<Dim, Real>::pressure(std::size_t i) const {
   return compute_pressure(parameters_.equation_of_state, parameters_.sound_speed, material(i).density, particles_.density[i], 0.0);
 }
 
-/// The records of the force pass, from the state after its rates were integrated.
+/// The records of the force pass, from the state after the rates.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::pack_forces(std::size_t i, const Mat<Dim>& corrected_stress) {
+void Solver<Dim, Real>::pack_forces(std::size_t i) {
   using Fields = PairFields<Dim, Real>;
   Real* record = fields_.record(i);
   const double rho = particles_.density[i];
@@ -70,9 +71,14 @@ void Solver<Dim, Real>::pack_forces(std::size_t i, const Mat<Dim>& corrected_str
   record[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
   record[Fields::density_at] = static_cast<Real>(rho);
   record[Fields::specific_pressure_at] = static_cast<Real>(pressure(i) / (rho * rho));
-  if (terms_.pair.stress)
-    for (int a = 0; a < Dim; ++a)
-      for (int b = 0; b < Dim; ++b) record[Fields::stress_at + a * Dim + b] = static_cast<Real>(corrected_stress(a, b));
+}
+
+/// Not read in the pass that it follows from.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::pack_stress(std::size_t i, const Mat<Dim>& corrected_stress) {
+  Real* record = fields_.record(i) + PairFields<Dim, Real>::stress_at;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = 0; b < Dim; ++b) record[a * Dim + b] = static_cast<Real>(corrected_stress(a, b));
 }
 
 /// The same for an ideal gas after a step of dt. Its forces depend on energy and velocity, so both are wanted at the step's end: half a
@@ -81,7 +87,7 @@ template <int Dim, typename Real>
 void Solver<Dim, Real>::pack_gas(std::size_t i, double dt) {
   using Fields = PairFields<Dim, Real>;
   const double ahead = 0.5 * dt;
-  const Vec<Dim> velocity = particles_.velocity[i] + ahead * acceleration_[i];
+  const Vec<Dim> velocity = particles_.velocity[i] + ahead * acceleration_[i].template cast<double>();
   const double e = particles_.internal_energy[i] + ahead * energy_rate_[i];
   const double rho = particles_.density[i];
   Real* record = fields_.record(i);
@@ -104,22 +110,6 @@ void Solver<Dim, Real>::pack_hourglass(std::size_t i, const Mat<Dim>& velocity_g
   record[0] = static_cast<Real>(half);
   const Symmetric<Dim> doubled = to_symmetric<Dim>(velocity_gradient + velocity_gradient.transpose());
   for (int k = 0; k < n_symmetric<Dim>; ++k) record[1 + k] = static_cast<Real>((k < Dim ? 0.5 : 1.0) * half * doubled[k]);
-}
-
-/// Pressure gradients g for the diffusion of density. Where nothing but pressure (and artificial viscosity) acts, the fluid's motion says
-/// what gradient there must be, rho (gravity - a), as in [Rhie & Chow 1983]: the corrected gradient follows an error of the pressure where
-/// that is smooth, over two or three spacings at a wall, and would leave it alone for seconds. A stress would take part in a.
-template <int Dim, typename Real>
-void Solver<Dim, Real>::pack_gradients() {
-  constexpr std::size_t stride = gradient_stride<Dim>;
-  const std::size_t n = particles_.size();
-  packed_gradient_.resize((n + images_.size()) * stride);
-  parallel_for_each(n + images_.size(), [&](std::size_t i) {
-    const std::size_t source = i < n ? i : static_cast<std::size_t>(images_.source[i - n]);
-    const Vec<Dim> gradient = terms_.pair.stress ? pressure_gradient_[source]
-                                                 : Vec<Dim>(particles_.density[source] * (parameters_.gravity - acceleration_[source]));
-    for (int a = 0; a < Dim; ++a) packed_gradient_[i * stride + static_cast<std::size_t>(a)] = static_cast<Real>(gradient[a]);
-  });
 }
 
 template class Solver<3, float>;

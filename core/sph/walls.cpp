@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "core/geometry/facet.h"
 #include "core/parallel.h"
+#include "core/sph/reorder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -93,28 +94,45 @@ void Walls<Dim>::reset(std::size_t n) {
   way_ = 0.0;
 }
 
-/// Slots follow the particles' order, so that what is near in space is near in memory.
 template <int Dim>
-void Walls<Dim>::reorder(std::span<const std::int32_t> order) {
-  std::vector<std::int32_t> slot(order.size(), -1);
-  std::vector<double> apart(order.size());
-  std::vector<WallNeighbour<Dim>> neighbours;
-  std::vector<View> views;
-  neighbours.reserve(neighbours_.size());
-  views.reserve(views_.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const auto from = static_cast<std::size_t>(order[i]);
-    apart[i] = apart_[from];
-    if (slot_[from] < 0) continue;
-    slot[i] = static_cast<std::int32_t>(neighbours.size());
-    neighbours.push_back(std::move(neighbours_[static_cast<std::size_t>(slot_[from])]));
-    neighbours.back().particle = static_cast<std::int32_t>(i);
-    views.push_back(std::move(views_[static_cast<std::size_t>(slot_[from])]));
+void Walls<Dim>::reorder(std::span<const std::int32_t> order, std::span<std::byte> scratch) {
+  smelt::reorder(slot_, order, scratch);
+  smelt::reorder(apart_, order, scratch);
+  sort_slots();
+}
+
+template <int Dim>
+void Walls<Dim>::keep(std::span<const std::int32_t> kept) {
+  keep_only(slot_, kept);
+  keep_only(apart_, kept);
+  sort_slots();
+}
+
+/// Slots follow the particles' order, so that what is near in space is near in memory; those that no particle has any more go.
+template <int Dim>
+void Walls<Dim>::sort_slots() {
+  std::vector<std::size_t> from;  // slot k is to be what slot from[k] is
+  std::vector<bool> taken(neighbours_.size(), false);
+  for (std::size_t i = 0; i < slot_.size(); ++i) {
+    if (slot_[i] < 0) continue;
+    const auto before = static_cast<std::size_t>(slot_[i]);
+    neighbours_[before].particle = static_cast<std::int32_t>(i);
+    slot_[i] = static_cast<std::int32_t>(from.size());
+    taken[before] = true;
+    from.push_back(before);
   }
-  slot_.swap(slot);
-  apart_.swap(apart);
-  neighbours_.swap(neighbours);
-  views_.swap(views);
+  const std::size_t n_kept = from.size();
+  for (std::size_t k = 0; k < taken.size(); ++k)
+    if (!taken[k]) from.push_back(k);
+  for (std::size_t k = 0; k < from.size(); ++k) {
+    std::size_t now = from[k];
+    while (now < k) now = from[now];  // where the swaps so far have put it
+    if (now == k) continue;
+    std::swap(neighbours_[k], neighbours_[now]);
+    std::swap(views_[k], views_[now]);
+  }
+  neighbours_.resize(n_kept);
+  views_.resize(n_kept);
 }
 
 template <int Dim>

@@ -12,6 +12,7 @@
 #include "core/sph/wall_integrals.h"
 #include "core/sph/wall_samples.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -58,8 +59,11 @@ class Walls {
   /// Forgets everything; there are `n` particles from now on.
   void reset(std::size_t n);
 
-  /// Follows particles that were put in another order, some of them left out: now particle i is what particle order[i] was.
-  void reorder(std::span<const std::int32_t> order);
+  /// Follows particles that were put in another order: now particle i is what particle order[i] was. `scratch` has 8 bytes for each.
+  void reorder(std::span<const std::int32_t> order, std::span<std::byte> scratch);
+
+  /// Follows particles that all went but those `kept`, in order.
+  void keep(std::span<const std::int32_t> kept);
 
   /// There are `n` particles from now on, those beyond the ones so far unknown.
   void grow(std::size_t n) {
@@ -77,6 +81,9 @@ class Walls {
 
   /// Of particle `i`, or nullptr where it is far from all walls.
   const WallNeighbour<Dim>* of(std::size_t i) const { return slot_[i] < 0 ? nullptr : &neighbours_[static_cast<std::size_t>(slot_[i])]; }
+
+  /// Where one of them is among them.
+  std::size_t slot(const WallNeighbour<Dim>& wall) const { return static_cast<std::size_t>(&wall - neighbours_.data()); }
 
  private:
   /// What a particle has in reach of one obstacle, at rest as the obstacle's facets are.
@@ -104,6 +111,7 @@ class Walls {
   double slack() const { return 0.25 * kernel_.smoothing_length(); }
   bool comes_near(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position, std::size_t i);
   void take_in(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position);
+  void sort_slots();
   void drop_blind();
   void refresh(const Colliders<Dim>& colliders, const Vec<Dim>& position, std::size_t slot);
   void look_up(const Colliders<Dim>& colliders, const Vec<Dim>& position, View& view) const;

@@ -32,13 +32,14 @@ void expect_all_pairs(std::vector<Vec<Dim>> points, double radius) {
     std::vector<std::int32_t> expected;
     for (std::size_t j = 0; j < sorted.size(); ++j)
       if (j != i && (sorted[i] - sorted[j]).norm() < radius) expected.push_back(static_cast<std::int32_t>(j));
-    const auto row = lists.row(i);
-    std::vector<std::int32_t> found(row.begin(), row.end());
+    std::vector<std::int32_t> found = lists.row(i);
     std::sort(found.begin(), found.end());
     ASSERT_EQ(found, expected) << "particle " << i;
-    const auto padded = lists.padded_row(i);
-    ASSERT_EQ(padded.size() % 8, 0u);
-    for (const auto k : padded.subspan(row.size())) ASSERT_EQ(k, static_cast<std::int32_t>(i)) << "rows are padded with the particle itself";
+    std::vector<std::int32_t> buffer(lists.room());
+    const NeighbourLists::Row row = lists.read(i, buffer.data());
+    ASSERT_EQ(row.neighbours.size(), expected.size());
+    ASSERT_EQ(row.padded.size() % 8, 0u);
+    for (const auto k : row.padded.subspan(row.neighbours.size())) ASSERT_EQ(k, static_cast<std::int32_t>(i)) << "rows are padded with the particle itself";
   }
 }
 
@@ -47,6 +48,13 @@ TEST(Neighbours, MatchesBruteForceIn2D) { expect_all_pairs<2>(random_points<2>(8
 TEST(Neighbours, MatchesBruteForceIn3D) { expect_all_pairs<3>(random_points<3>(1500, 3), 0.31); }
 TEST(Neighbours, OneParticleHasNone) { expect_all_pairs<3>({Vec3(1.0, 2.0, 3.0)}, 0.5); }
 TEST(Neighbours, CoincidentParticlesSeeEachOther) { expect_all_pairs<3>({Vec3(1, 2, 3), Vec3(1, 2, 3), Vec3(1, 2, 3.1)}, 0.5); }
+
+/// More of them in reach than a byte can count.
+TEST(Neighbours, CrowdsAreSeenWhole) {
+  auto points = random_points<3>(1500, 7);
+  for (std::size_t k = 0; k < 1200; ++k) points[k] *= 0.2;
+  expect_all_pairs<3>(points, 0.31);
+}
 
 TEST(Neighbours, FarClustersNeedNoDenseGrid) {
   auto points = random_points<3>(100, 4);

@@ -22,7 +22,6 @@ struct Pair {
 
   Pair(KernelType kernel, double distance) {
     using Fields = PairFields<Dim, Real>;
-    constexpr int lanes = pair_lanes<Real>;
     fields.stride = Fields::stride_of(true);
     fields.records.assign(2 * static_cast<std::size_t>(fields.stride), Real(0));
     for (const int k : {0, 1}) {
@@ -40,12 +39,8 @@ struct Pair {
       record[Fields::specific_pressure_at] = static_cast<Real>(k);
       for (int entry = 0; entry < Dim * Dim; ++entry) record[Fields::stress_at + entry] = static_cast<Real>(1 + entry + k);
     }
-    lists.row_multiple = lanes;
-    lists.blocks = {std::vector<std::int32_t>(lanes, 0), std::vector<std::int32_t>(lanes, 1)};
-    lists.blocks[0][0] = 1;
-    lists.blocks[1][0] = 0;
-    lists.begin = {lists.blocks[0].data(), lists.blocks[1].data()};
-    lists.count = {1, 1};
+    const std::vector<Vec<Dim>> position = {Vec<Dim>::Zero(), Vec<Dim>::Unit(0)};
+    build_neighbour_lists<Dim>(position, 2.0, 2.0, pair_lanes<Real>, lists);
     // The distance as the loops see it, rounded.
     double r2 = 0.0;
     for (int a = 0; a < Dim; ++a) r2 += std::pow(static_cast<double>(fields.record(0)[a]), 2);
