@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
+#include "core/round_down.h"
 #include "core/sph/gradient_correction.h"
 #include "core/sph/kernel.h"
 #include "core/sph/reorder.h"
@@ -108,7 +109,7 @@ void Solver<Dim, Real>::resize_derived() {
   if (terms_.gas) energy_rate_.resize(n);
   if (terms_.pair.has_heat()) heat_balance_.resize(n);
   if (terms_.pair.xsph) transport_.resize(n, RealVec::Zero());
-  if (!colliders_.empty()) clearance_.resize(n, 0.0);
+  if (!colliders_.empty()) clearance_.resize(n, 0.0F);
   if (terms_.exchange) free_surface_area_.resize(n, 0.0);
 }
 
@@ -118,7 +119,7 @@ template <int Dim, typename Real>
 void Solver<Dim, Real>::prepare(double time) {
   colliders_.place_at(time);
   if (terms_.pair.has_heat()) heat_balance_.assign(particles_.size(), {});
-  std::fill(clearance_.begin(), clearance_.end(), 0.0);
+  std::fill(clearance_.begin(), clearance_.end(), 0.0F);
   if (walls_) walls_->reset(particles_.size());
   search_neighbours(least_skin());
   if (walls_) walls_->update(colliders_, particles_.position);
@@ -200,7 +201,7 @@ void Solver<Dim, Real>::search_neighbours(double skin) {
   for_each_array(particles_, reorder);
   reorder(transport_);
   reorder(heat_balance_);
-  if (terms_.periodic) std::fill(clearance_.begin(), clearance_.end(), 0.0);  // of places across the box
+  if (terms_.periodic) std::fill(clearance_.begin(), clearance_.end(), 0.0F);  // of places across the box
   reorder(clearance_);
   reorder(free_surface_area_);
   // The rates of the last step look half a kick ahead (pack_gas), or say what gradient balances them (evaluate_pressure_gradients).
@@ -461,14 +462,14 @@ template <int Dim, typename Real>
 void Solver<Dim, Real>::move_particle(std::size_t i, double radius, double dt, Vec<Dim>& transport,
                                       std::vector<BodyHit<Dim>>* hits) {
   const double reach = colliders_.reach(radius, dt, transport);
-  if (clearance_[i] <= reach) clearance_[i] = colliders_.clearance(particles_.position[i], std::max(reach, 16.0 * radius));
+  if (clearance_[i] <= reach) clearance_[i] = round_down(colliders_.clearance(particles_.position[i], std::max(reach, 16.0 * radius)));
   if (clearance_[i] > reach) {
-    clearance_[i] -= dt * transport.norm() + colliders_.step_way();
+    clearance_[i] = round_down(clearance_[i] - (dt * transport.norm() + colliders_.step_way()));
     particles_.position[i] += dt * transport;
     return;
   }
   colliders_.move_sphere(radius, dt, particles_.position[i], transport, particles_.velocity[i], hits);
-  clearance_[i] = 0.0;
+  clearance_[i] = 0.0F;
 }
 
 template <int Dim, typename Real>

@@ -222,7 +222,7 @@ class Solver {
   double step_way_ = 0.0;  ///< farthest way of any particle against their mean in the last step [m]
   double travelled_at_surface_ = 0.0;  ///< the same since the free surface was found [m]
   double travelled_ = std::numeric_limits<double>::infinity();  ///< farthest way of any particle against their mean since the last search [m]
-  std::vector<double> clearance_;  ///< at least so far is each particle from all obstacles [m]; empty without any
+  std::vector<float> clearance_;  ///< at least so far is each particle from all obstacles [m]; empty without any
   std::vector<DensitySums<Real>> density_sums_;  ///< empty where density follows the continuity equation
   std::optional<Walls<Dim>> walls_;  ///< absent where no obstacle is a wall
   std::vector<Vec<Dim>> wall_gradient_;  ///< of the pressure at each wall neighbour [Pa/m]

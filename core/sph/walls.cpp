@@ -88,7 +88,7 @@ void add_to_contact(const Piece<Dim>& piece, std::uint32_t obstacle, double same
 template <int Dim>
 void Walls<Dim>::reset(std::size_t n) {
   slot_.assign(n, -1);
-  apart_.assign(n, 0.0);
+  apart_.assign(n, 0.0F);
   neighbours_.clear();
   views_.clear();
   way_ = 0.0;
@@ -163,7 +163,7 @@ bool Walls<Dim>::comes_near(const Colliders<Dim>& colliders, std::span<const Vec
   double nearest = limit;
   for (const PlacedObstacle<Dim>& placed : colliders.placed())
     if (placed.obstacle.wall && !placed.gone) nearest = std::min(nearest, placed.bvh.distance(placed.begin.to_rest(position[i]), nearest));
-  apart_[i] = nearest - kernel_.support_radius() + way_;
+  apart_[i] = round_down(nearest - kernel_.support_radius() + way_);
   return nearest < reach();
 }
 
@@ -194,7 +194,7 @@ void Walls<Dim>::drop_blind() {
     const auto i = static_cast<std::size_t>(neighbours_[k].particle);
     if (views_[k].sights.empty()) {
       slot_[i] = -1;
-      apart_[i] = way_;  // looked at anew at the next step
+      apart_[i] = round_down(way_);  // looked at anew at the next step
       continue;
     }
     if (kept != k) {

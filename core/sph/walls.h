@@ -7,6 +7,7 @@
 // particle, d > 0 the distance to a facet's plane, u the wall's rigid velocity field at the particle's place, Omega its spin (skew), a_w its
 // acceleration, A = int_f W dS, Gamma = int W dV over the solid, dx the spacing.
 
+#include "core/round_down.h"
 #include "core/sph/collision.h"
 #include "core/sph/particles.h"
 #include "core/sph/wall_integrals.h"
@@ -59,7 +60,7 @@ class Walls {
   /// Forgets everything; there are `n` particles from now on.
   void reset(std::size_t n);
 
-  /// Follows particles that were put in another order: now particle i is what particle order[i] was. `scratch` has 8 bytes for each.
+  /// Follows particles that were put in another order: now particle i is what particle order[i] was. `scratch` has 4 bytes for each.
   void reorder(std::span<const std::int32_t> order, std::span<std::byte> scratch);
 
   /// Follows particles that all went but those `kept`, in order.
@@ -68,11 +69,11 @@ class Walls {
   /// There are `n` particles from now on, those beyond the ones so far unknown.
   void grow(std::size_t n) {
     slot_.resize(n, -1);
-    apart_.resize(n, 0.0);
+    apart_.resize(n, 0.0F);
   }
 
   /// Particle `i` has moved by `way` [m].
-  void travel(std::size_t i, double way) { apart_[i] -= way; }
+  void travel(std::size_t i, double way) { apart_[i] = round_down(apart_[i] - way); }
 
   /// What every particle sees from where it is now, after a step of the obstacles. Obstacles that are not walls are left out.
   void update(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position);
@@ -125,7 +126,7 @@ class Walls {
   double least_distance_;
   double way_ = 0.0;  ///< of the obstacles, at least, since the last reset [m]
   std::vector<std::int32_t> slot_;  ///< of each particle among neighbours_, or -1
-  std::vector<double> apart_;  ///< how far the obstacles must have gone before a particle without a slot can see one [m]
+  std::vector<float> apart_;  ///< how far, at least, the obstacles must have gone before a particle without a slot can see one [m]
   std::vector<WallNeighbour<Dim>> neighbours_;
   std::vector<View> views_;  ///< of each of them
   std::optional<SampleKernel> sample_kernel_;  ///< in 3D
