@@ -38,7 +38,7 @@ struct NeighbourLists {
 
   std::vector<Block> blocks;
   std::vector<Place> places;
-  std::vector<std::int32_t> names;  ///< what the indices that follow from the runs stand for; empty: the particles of these numbers
+  std::vector<std::int32_t> names;  ///< what places in the order of the search stand for; empty: themselves
   std::size_t longest = 0;          ///< row, in neighbours
   int row_multiple = 1;
 
