@@ -29,13 +29,16 @@ void parallel_for_each(std::size_t n, const Body& body) {
   });
 }
 
-/// Reduces map(begin, end), of blocks of up to block_size, over [0, n) in a tree that depends on n alone, so that sums round the same way on any
-/// number of threads.
+/// Reduces map(begin, end), of blocks of up to block_size, over [0, n) in a tree that depends on n alone, so that sums
+/// round the same way on any number of threads.
 template <typename Value, typename Map, typename Join>
 Value deterministic_reduce_blocks(std::size_t n, const Value& identity, const Map& map, const Join& join) {
   return tbb::parallel_deterministic_reduce(
       tbb::blocked_range<std::size_t>(0, n, block_size), identity,
-      [&](const tbb::blocked_range<std::size_t>& range, const Value& value) { return join(value, map(range.begin(), range.end())); }, join);
+      [&](const tbb::blocked_range<std::size_t>& range, const Value& value) {
+        return join(value, map(range.begin(), range.end()));
+      },
+      join);
 }
 
 /// The same of map(i).

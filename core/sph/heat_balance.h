@@ -15,7 +15,7 @@ namespace smelt {
 /// Of one particle, from the last pass over pairs.
 template <int Dim, typename Real>
 struct HeatBalance {
-  Real moment_trace = 1;                                              ///< theta, not below `least_moment_trace` [-]
+  Real moment_trace = 1;  ///< theta, not below `least_moment_trace` [-]
   Eigen::Matrix<Real, Dim, 1> lambda = Eigen::Matrix<Real, Dim, 1>::Zero();  ///< [1/m]
 };
 
@@ -23,8 +23,8 @@ struct HeatBalance {
 /// nearly coincide would exchange it without bound.
 inline constexpr double least_moment_trace = 0.25;
 
-/// The next sweep, with the gradient correction L. Where the support is not full, at a free surface or an insulating wall, the sum of x_ij is no error:
-/// lambda fades to 0 as theta falls from 0.9 to 0.8.
+/// The next sweep, with the gradient correction L. Where the support is not full, at a free surface or an insulating
+/// wall, the sum of x_ij is no error: lambda fades to 0 as theta falls from 0.9 to 0.8.
 template <int Dim, typename Real>
 HeatBalance<Dim, Real> balance_heat(const RateSums<Dim, Real>& sums, const Mat<Dim>& correction) {
   HeatBalance<Dim, Real> balance;

@@ -125,8 +125,8 @@ std::vector<Run> split_runs(const std::vector<Run>& runs) {
   return pieces;
 }
 
-/// What cells are sorted by. In 3D, rods of 8 x 4 cells along x one after another: what the particles of a few cells have in reach then lies
-/// in a core's own cache however many particles there are, in a dozen runs.
+/// What cells are sorted by. In 3D, rods of 8 x 4 cells along x one after another: what the particles of a few cells
+/// have in reach then lies in a core's own cache however many particles there are, in a dozen runs.
 template <int Dim>
 std::uint64_t rank_cell(std::uint64_t key) {
   if constexpr (Dim < 3) return key;
@@ -142,7 +142,8 @@ std::uint64_t rank_cell(std::uint64_t key) {
 
 /// Appends the row of particle `i` to `bytes`; returns how many neighbours it has.
 template <int Dim>
-std::size_t append_row(std::span<const Vec<Dim>> position, double radius2, const std::vector<Run>& runs, std::int32_t i, std::vector<std::uint8_t>& bytes) {
+std::size_t append_row(std::span<const Vec<Dim>> position, double radius2, const std::vector<Run>& runs, std::int32_t i,
+                       std::vector<std::uint8_t>& bytes) {
   std::size_t n_candidates = 0;
   for (const Run& run : runs) n_candidates += static_cast<std::size_t>(run.end - run.begin);
   const std::size_t start = bytes.size();
@@ -184,8 +185,8 @@ Box<Dim> bounds_of(std::span<const Vec<Dim>> position) {
 }
 
 template <int Dim>
-std::pmr::vector<std::int32_t> compute_cell_order(std::span<const Vec<Dim>> position, std::span<const std::int32_t> id, double cell_size,
-                                                  std::pmr::memory_resource* memory) {
+std::pmr::vector<std::int32_t> compute_cell_order(std::span<const Vec<Dim>> position, std::span<const std::int32_t> id,
+                                                  double cell_size, std::pmr::memory_resource* memory) {
   const CellFrame<Dim> frame = make_cell_frame<Dim>(position, cell_size);
   std::pmr::vector<std::uint64_t> ranks(position.size(), memory);
   parallel_for_each(position.size(), [&](std::size_t i) { ranks[i] = rank_cell<Dim>(frame.key(position[i])); });
@@ -249,11 +250,14 @@ std::vector<std::int32_t> NeighbourLists::row(std::size_t i) const {
 }
 
 template Box<1> bounds_of<1>(std::span<const Vec<1>>);
-template std::pmr::vector<std::int32_t> compute_cell_order<1>(std::span<const Vec<1>>, std::span<const std::int32_t>, double, std::pmr::memory_resource*);
+template std::pmr::vector<std::int32_t> compute_cell_order<1>(std::span<const Vec<1>>, std::span<const std::int32_t>,
+                                                              double, std::pmr::memory_resource*);
 template Box<2> bounds_of<2>(std::span<const Vec<2>>);
-template std::pmr::vector<std::int32_t> compute_cell_order<2>(std::span<const Vec<2>>, std::span<const std::int32_t>, double, std::pmr::memory_resource*);
+template std::pmr::vector<std::int32_t> compute_cell_order<2>(std::span<const Vec<2>>, std::span<const std::int32_t>,
+                                                              double, std::pmr::memory_resource*);
 template Box<3> bounds_of<3>(std::span<const Vec<3>>);
-template std::pmr::vector<std::int32_t> compute_cell_order<3>(std::span<const Vec<3>>, std::span<const std::int32_t>, double, std::pmr::memory_resource*);
+template std::pmr::vector<std::int32_t> compute_cell_order<3>(std::span<const Vec<3>>, std::span<const std::int32_t>,
+                                                              double, std::pmr::memory_resource*);
 template void build_neighbour_lists<1>(std::span<const Vec<1>>, double, double, int, NeighbourLists&);
 template void build_neighbour_lists<2>(std::span<const Vec<2>>, double, double, int, NeighbourLists&);
 template void build_neighbour_lists<3>(std::span<const Vec<3>>, double, double, int, NeighbourLists&);

@@ -12,13 +12,14 @@
 
 namespace smelt {
 
-/// The neighbours of each particle, itself left out, in a byte each: these rows are most of what a simulation keeps in memory. What the particles
-/// of a grid cell may have in reach lies in a few runs of particles next to one another, the same for all of them. A row says for each run how
-/// many of its particles are neighbours, then which, counted from the run's first.
+/// The neighbours of each particle, itself left out, in a byte each: these rows are most of what a simulation keeps in
+/// memory. What the particles of a grid cell may have in reach lies in a few runs of particles next to one another, the
+/// same for all of them. A row says for each run how many of its particles are neighbours, then which, counted from the
+/// run's first.
 struct NeighbourLists {
   static constexpr std::size_t cells_per_block = 32;
   static constexpr std::int32_t max_run = 255;  ///< particles: places in a run and counts of them fit a byte
-  static constexpr std::size_t step = 16;       ///< places that are read at once; a block ends in as many that nobody means
+  static constexpr std::size_t step = 16;  ///< places that are read at once; a block ends in as many that nobody means
 
   /// The rows of a number of cells, as the search makes them: one thread a block.
   struct Block {
@@ -30,8 +31,8 @@ struct NeighbourLists {
   struct Place {
     std::uint32_t cell, byte;
   };
-  /// A row spelled out. It is padded with the particle itself to a multiple of `row_multiple`: its pair with itself has x_ij = 0 and adds
-  /// exactly nothing to any sum over differences.
+  /// A row spelled out. It is padded with the particle itself to a multiple of `row_multiple`: its pair with itself has
+  /// x_ij = 0 and adds exactly nothing to any sum over differences.
   struct Row {
     std::span<const std::int32_t> neighbours, padded;
   };
@@ -58,7 +59,8 @@ struct NeighbourLists {
     for (std::uint32_t run = first_run; run < end_run; ++run, ++count) {
       // A whole step each time, most often the only one: what is beyond a run's last the next run overwrites.
       spell_out(block.run_begin[run], place, end);
-      for (std::size_t done = step; done < *count; done += step) spell_out(block.run_begin[run], place + done, end + done);
+      for (std::size_t done = step; done < *count; done += step)
+        spell_out(block.run_begin[run], place + done, end + done);
       end += *count;
       place += *count;
     }
@@ -85,11 +87,13 @@ struct NeighbourLists {
 template <int Dim>
 Box<Dim> bounds_of(std::span<const Vec<Dim>> position);
 
-/// A permutation that puts particles of one grid cell (edge `cell_size` [m]) next to one another, cells near one another where they
-/// can be, particles of a cell by id: it depends on positions and ids only, not on the order they come in. It takes 12 bytes a particle from `memory`.
-/// Throws InternalError where a position is not finite or the grid would need more than 2^21 cells along an axis.
+/// A permutation that puts particles of one grid cell (edge `cell_size` [m]) next to one another, cells near one
+/// another where they can be, particles of a cell by id: it depends on positions and ids only, not on the order they
+/// come in. It takes 12 bytes a particle from `memory`. Throws InternalError where a position is not finite or the grid
+/// would need more than 2^21 cells along an axis.
 template <int Dim>
-std::pmr::vector<std::int32_t> compute_cell_order(std::span<const Vec<Dim>> position, std::span<const std::int32_t> id, double cell_size,
+std::pmr::vector<std::int32_t> compute_cell_order(std::span<const Vec<Dim>> position, std::span<const std::int32_t> id,
+                                                  double cell_size,
                                                   std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
 /// All pairs with |x_ij| < radius. `position` must be in the order of compute_cell_order with cell_size >= radius.

@@ -12,8 +12,8 @@
 
 namespace smelt {
 
-/// Entry i becomes what entry order[i] was, by way of `scratch`, of at least as many bytes. A second array would cost more than the copy back:
-/// its pages are new to the process each time. Empty arrays stay empty.
+/// Entry i becomes what entry order[i] was, by way of `scratch`, of at least as many bytes. A second array would cost
+/// more than the copy back: its pages are new to the process each time. Empty arrays stay empty.
 template <typename T>
 void reorder(std::vector<T>& values, std::span<const std::int32_t> order, std::span<std::byte> scratch) {
   if (values.empty()) return;

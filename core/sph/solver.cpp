@@ -190,7 +190,8 @@ void Solver<Dim, Real>::search_neighbours(double skin) {
   skin_ = skin;
   const double radius = list_reach(skin);
   if (terms_.periodic) wrap_positions<Dim>(parameters_.period, particles_.position);
-  // The records are packed anew after a search: until then their memory is free, with one more record for what alignment takes.
+  // The records are packed anew after a search: until then their memory is free, with one more record for what
+  // alignment takes.
   const std::size_t n = particles_.size();
   fields_.records.resize((n + 1) * static_cast<std::size_t>(fields_.stride));
   const std::span<std::byte> scratch = std::as_writable_bytes(std::span(fields_.records));
@@ -204,7 +205,8 @@ void Solver<Dim, Real>::search_neighbours(double skin) {
   if (terms_.periodic) std::fill(clearance_.begin(), clearance_.end(), 0.0F);  // of places across the box
   reorder(clearance_);
   reorder(free_surface_area_);
-  // The rates of the last step look half a kick ahead (pack_gas), or say what gradient balances them (evaluate_pressure_gradients).
+  // The rates of the last step look half a kick ahead (pack_gas), or say what gradient balances them
+  // (evaluate_pressure_gradients).
   if (terms_.gas || terms_.diffusion) reorder(acceleration_);
   if (terms_.gas) reorder(energy_rate_);
   // In a periodic box particles came from across it.
@@ -253,9 +255,9 @@ void Solver<Dim, Real>::set_summed_densities(bool normalise) {
   copy_records_to_images();
 }
 
-/// The first pass over pairs, and what follows from its sums particle by particle, block after block, so that the sums live no longer than a
-/// block does: density, heat and stress advance by dt to `time`. With dt = 0 nothing advances, but the stress of a law without memory and
-/// the XSPH correction follow from the state.
+/// The first pass over pairs, and what follows from its sums particle by particle, block after block, so that the sums
+/// live no longer than a block does: density, heat and stress advance by dt to `time`. With dt = 0 nothing advances,
+/// but the stress of a law without memory and the XSPH correction follow from the state.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::advance_rates(double dt, double time) {
   end_stage(StepStage::records);
@@ -264,7 +266,8 @@ void Solver<Dim, Real>::advance_rates(double dt, double time) {
   match_driven_densities();
   if (terms_.exchange && dt > 0.0) find_source_powers(time);
   heat_ledger_ += deterministic_reduce_blocks(
-      particles_.size(), HeatLedger{}, [&](std::size_t begin, std::size_t end) { return advance_block(begin, end, dt, time); },
+      particles_.size(), HeatLedger{},
+      [&](std::size_t begin, std::size_t end) { return advance_block(begin, end, dt, time); },
       [](HeatLedger a, const HeatLedger& b) { return a += b; });
   end_stage(StepStage::rates);
   parallel_for_each(particles_.size(), [&](std::size_t i) { terms_.gas ? pack_gas(i, dt) : pack_forces(i); });
@@ -283,29 +286,32 @@ HeatLedger Solver<Dim, Real>::advance_block(std::size_t begin, std::size_t end, 
     RateSums<Dim, Real>& rate = rates[i - begin];
     if (const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr) add_wall_rates(*wall, rate);
     Mat<Dim> correction = Mat<Dim>::Zero();
-    if (terms_.pair.stress || terms_.pair.has_heat()) correction = compute_gradient_correction<Dim>(unpack<Dim, Real>(rate.position_moment));
+    if (terms_.pair.stress || terms_.pair.has_heat())
+      correction = compute_gradient_correction<Dim>(unpack<Dim, Real>(rate.position_moment));
     if (terms_.pair.has_heat()) {
       if (dt > 0.0) passed += advance_heat(i, rate.heat, dt, time);
       heat_balance_[i] = balance_heat<Dim, Real>(rate, correction);
     }
     if (terms_.pair.stress) advance_stress(i, dt, correction, rate);
-    if (parameters_.density == DensityForm::continuity && !is_driven(i)) particles_.density[i] += dt * rate.density_rate;
+    if (parameters_.density == DensityForm::continuity && !is_driven(i))
+      particles_.density[i] += dt * rate.density_rate;
     if (terms_.pair.xsph)
       for (int a = 0; a < Dim; ++a) transport_[i][a] = static_cast<Real>(parameters_.xsph) * rate.xsph[a];
   }
   return passed;
 }
 
-/// Near walls; everywhere where density diffuses in a fluid with a stress. Where nothing but pressure (and artificial viscosity) acts, the
-/// fluid's motion says what gradient there must be for the diffusion, rho (gravity - a), as in [Rhie & Chow 1983]: the corrected gradient follows
-/// an error of the pressure where that is smooth, over two or three spacings at a wall, and would leave it alone for seconds. A stress
-/// would take part in a.
+/// Near walls; everywhere where density diffuses in a fluid with a stress. Where nothing but pressure (and artificial
+/// viscosity) acts, the fluid's motion says what gradient there must be for the diffusion, rho (gravity - a), as in
+/// [Rhie & Chow 1983]: the corrected gradient follows an error of the pressure where that is smooth, over two or three
+/// spacings at a wall, and would leave it alone for seconds. A stress would take part in a.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::evaluate_pressure_gradients() {
   constexpr std::size_t stride = gradient_stride<Dim>;
   const std::size_t n = particles_.size();
   const auto pack = [&](std::size_t i, const Vec<Dim>& gradient) {
-    for (int a = 0; a < Dim; ++a) packed_gradient_[i * stride + static_cast<std::size_t>(a)] = static_cast<Real>(gradient[a]);
+    for (int a = 0; a < Dim; ++a)
+      packed_gradient_[i * stride + static_cast<std::size_t>(a)] = static_cast<Real>(gradient[a]);
   };
   const bool everywhere = terms_.diffusion && terms_.pair.stress;
   const auto evaluate = [&](std::size_t begin, std::size_t end) {
@@ -313,7 +319,8 @@ void Solver<Dim, Real>::evaluate_pressure_gradients() {
     compute_pressure_gradient_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end, sums.data());
     for (std::size_t i = begin; i < end; ++i) {
       const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr;
-      const Vec<Dim> gradient = compute_pressure_gradient<Dim, Real>(sums[i - begin], wall, particles_.density[i], parameters_.gravity);
+      const Vec<Dim> gradient =
+          compute_pressure_gradient<Dim, Real>(sums[i - begin], wall, particles_.density[i], parameters_.gravity);
       if (wall) wall_gradient_[walls_->slot(*wall)] = gradient;
       if (everywhere) pack(i, gradient);
     }
@@ -333,7 +340,8 @@ void Solver<Dim, Real>::evaluate_pressure_gradients() {
       pack(i, particles_.density[i] * (parameters_.gravity - acceleration_[i].template cast<double>()));
     });
   for (std::size_t k = 0; k < images_.size(); ++k)
-    std::copy_n(packed_gradient_.data() + stride * static_cast<std::size_t>(images_.source[k]), stride, packed_gradient_.data() + stride * (n + k));
+    std::copy_n(packed_gradient_.data() + stride * static_cast<std::size_t>(images_.source[k]), stride,
+                packed_gradient_.data() + stride * (n + k));
 }
 
 /// drho_i/dt += delta h c sum ..., where p/c^2 stands for the density.
@@ -341,8 +349,8 @@ template <int Dim, typename Real>
 void Solver<Dim, Real>::add_density_diffusion(std::size_t begin, std::size_t end, RateSums<Dim, Real>* rates) const {
   const double strength = parameters_.density_diffusion * parameters_.smoothing_length / parameters_.sound_speed;
   std::array<Real, block_size> sums;
-  compute_pressure_diffusion_sums<Dim, Real>(fields_, packed_gradient_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end,
-                                             sums.data());
+  compute_pressure_diffusion_sums<Dim, Real>(fields_, packed_gradient_, lists_, parameters_.kernel,
+                                             parameters_.smoothing_length, begin, end, sums.data());
   for (std::size_t k = 0; k < end - begin; ++k) rates[k].density_rate += static_cast<Real>(strength * sums[k]);
 }
 
@@ -354,12 +362,14 @@ void Solver<Dim, Real>::add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<
   for (int a = 0; a < Dim; ++a) velocity[a] = fields_.record(i)[Fields::velocity_at + a];
   accumulate_wall_rates<Dim, Real>(wall, colliders_, terms_.pair, velocity, particles_.density[i], material(i).density,
                                    terms_.pair.has_heat() ? particles_.temperature[i] : 0.0,
-                                   terms_.pair.has_heat() ? static_cast<double>(heat_balance_[i].moment_trace) : 1.0, rate);
+                                   terms_.pair.has_heat() ? static_cast<double>(heat_balance_[i].moment_trace) : 1.0,
+                                   rate);
 }
 
 /// Advances the extra stress S and packs S L for the force pass; `correction` is L.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::advance_stress(std::size_t i, double dt, const Mat<Dim>& correction, RateSums<Dim, Real>& rate) {
+void Solver<Dim, Real>::advance_stress(std::size_t i, double dt, const Mat<Dim>& correction,
+                                       RateSums<Dim, Real>& rate) {
   Mat<Dim> bare_gradient;
   for (int a = 0; a < Dim; ++a)
     for (int b = 0; b < Dim; ++b) bare_gradient(a, b) = rate.velocity_moment[a * Dim + b];
@@ -393,7 +403,8 @@ void Solver<Dim, Real>::evaluate_forces() {
     else
       compute_force_sums<Dim, Real>(fields_, lists_, terms_.pair, force, begin, end, sums.data());
     for (std::size_t i = begin; i < end; ++i)
-      for (int a = 0; a < Dim; ++a) acceleration_[i][a] = static_cast<Real>(sums[i - begin][a] + parameters_.gravity[a]);
+      for (int a = 0; a < Dim; ++a)
+        acceleration_[i][a] = static_cast<Real>(sums[i - begin][a] + parameters_.gravity[a]);
   });
   end_stage(StepStage::forces);
   if (walls_) {
@@ -451,7 +462,8 @@ void Solver<Dim, Real>::sum_body_loads() {
 
 template <int Dim, typename Real>
 void Solver<Dim, Real>::kick(double dt) {
-  parallel_for_each(particles_.size(), [&](std::size_t i) { particles_.velocity[i] += dt * acceleration_[i].template cast<double>(); });
+  parallel_for_each(particles_.size(),
+                    [&](std::size_t i) { particles_.velocity[i] += dt * acceleration_[i].template cast<double>(); });
   if (terms_.gas)
     parallel_for_each(particles_.size(), [&](std::size_t i) { particles_.internal_energy[i] += dt * energy_rate_[i]; });
   if (colliders_.has_bodies()) colliders_.kick_bodies(parameters_.gravity, dt);
@@ -462,7 +474,8 @@ template <int Dim, typename Real>
 void Solver<Dim, Real>::move_particle(std::size_t i, double radius, double dt, Vec<Dim>& transport,
                                       std::vector<BodyHit<Dim>>* hits) {
   const double reach = colliders_.reach(radius, dt, transport);
-  if (clearance_[i] <= reach) clearance_[i] = round_down(colliders_.clearance(particles_.position[i], std::max(reach, 16.0 * radius)));
+  if (clearance_[i] <= reach)
+    clearance_[i] = round_down(colliders_.clearance(particles_.position[i], std::max(reach, 16.0 * radius)));
   if (clearance_[i] > reach) {
     clearance_[i] = round_down(clearance_[i] - (dt * transport.norm() + colliders_.step_way()));
     particles_.position[i] += dt * transport;

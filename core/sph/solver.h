@@ -84,7 +84,8 @@ enum class StepStage : std::uint8_t {
   wall_forces,  ///< what walls add to it
   watch         ///< particles that come and go, and whether the state is sound
 };
-inline constexpr std::array step_stage_names{"kick", "drift", "search", "wall sums", "records", "gradients", "rates", "forces", "wall forces", "watch"};
+inline constexpr std::array step_stage_names{"kick",      "drift", "search", "wall sums",   "records",
+                                             "gradients", "rates", "forces", "wall forces", "watch"};
 
 /// A particle that hit a rigid body.
 template <int Dim>
@@ -236,7 +237,8 @@ class Solver {
   std::vector<Vec<Dim>>
       body_forces_;  ///< on each obstacle by each wall neighbour [N]; like the next, empty without rigid bodies
   std::vector<std::vector<ParticleHit<Dim>>> body_hits_;  ///< of the last drift, in blocks of particles
-  /// What XSPH adds to the velocity that particles move with, from the rates on; that velocity itself, from the drift on [m/s]. Empty without.
+  /// What XSPH adds to the velocity that particles move with, from the rates on; that velocity itself, from the drift
+  /// on [m/s]. Empty without.
   std::vector<RealVec> transport_;
 };
 

@@ -87,15 +87,16 @@ void Solver<Dim, Real>::find_source_powers(double time) {
     const HeatSource<Dim>& source = parameters_.heat_sources[k];
     if (!source.power || !source.burns_at(time)) continue;
     const double weighted_area = deterministic_reduce(
-        particles_.size(), 0.0, [&](std::size_t i) { return free_surface_area_[i] * source.weight_at(particles_.position[i], time); },
+        particles_.size(), 0.0,
+        [&](std::size_t i) { return free_surface_area_[i] * source.weight_at(particles_.position[i], time); },
         [](double a, double b) { return a + b; });
     if (weighted_area > 0.0) power_density_[k] = *source.power / weighted_area;
   }
 }
 
-/// rho c_p dT/dt = div(c_p rho0 k grad T), `conducted` the sum over pairs: the factor rho0/rho makes the exchange symmetric, so that
-/// sum m c_p T is kept. The free surface comes in implicitly, so that it is stable for any area and heat capacity. What a vent drives keeps
-/// its heat. Returns what passed through the surface and the walls.
+/// rho c_p dT/dt = div(c_p rho0 k grad T), `conducted` the sum over pairs: the factor rho0/rho makes the exchange
+/// symmetric, so that sum m c_p T is kept. The free surface comes in implicitly, so that it is stable for any area and
+/// heat capacity. What a vent drives keeps its heat. Returns what passed through the surface and the walls.
 template <int Dim, typename Real>
 HeatLedger Solver<Dim, Real>::advance_heat(std::size_t i, double conducted, double dt, double time) {
   const Material& m = material(i);

@@ -73,7 +73,7 @@ void Solver<Dim, Real>::pack_forces(std::size_t i) {
   record[Fields::specific_pressure_at] = static_cast<Real>(pressure(i) / (rho * rho));
 }
 
-/// Not read in the pass that it follows from.
+/// At once, while other particles' rates are still summed: the first pass does not read it.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::pack_stress(std::size_t i, const Mat<Dim>& corrected_stress) {
   Real* record = fields_.record(i) + PairFields<Dim, Real>::stress_at;

@@ -108,7 +108,8 @@ void Walls<Dim>::keep(std::span<const std::int32_t> kept) {
   sort_slots();
 }
 
-/// Slots follow the particles' order, so that what is near in space is near in memory; those that no particle has any more go.
+/// Slots follow the particles' order, so that what is near in space is near in memory; those that no particle has any
+/// more go.
 template <int Dim>
 void Walls<Dim>::sort_slots() {
   std::vector<std::size_t> from;  // slot k is to be what slot from[k] is

@@ -60,7 +60,8 @@ class Walls {
   /// Forgets everything; there are `n` particles from now on.
   void reset(std::size_t n);
 
-  /// Follows particles that were put in another order: now particle i is what particle order[i] was. `scratch` has 4 bytes for each.
+  /// Follows particles that were put in another order: now particle i is what particle order[i] was. `scratch` has 4
+  /// bytes for each.
   void reorder(std::span<const std::int32_t> order, std::span<std::byte> scratch);
 
   /// Follows particles that all went but those `kept`, in order.
@@ -84,7 +85,9 @@ class Walls {
   const WallNeighbour<Dim>* of(std::size_t i) const { return slot_[i] < 0 ? nullptr : &neighbours_[static_cast<std::size_t>(slot_[i])]; }
 
   /// Where one of them is among them.
-  std::size_t slot(const WallNeighbour<Dim>& wall) const { return static_cast<std::size_t>(&wall - neighbours_.data()); }
+  std::size_t slot(const WallNeighbour<Dim>& wall) const {
+    return static_cast<std::size_t>(&wall - neighbours_.data());
+  }
 
  private:
   /// What a particle has in reach of one obstacle, at rest as the obstacle's facets are.
@@ -126,7 +129,7 @@ class Walls {
   double least_distance_;
   double way_ = 0.0;  ///< of the obstacles, at least, since the last reset [m]
   std::vector<std::int32_t> slot_;  ///< of each particle among neighbours_, or -1
-  std::vector<float> apart_;  ///< how far, at least, the obstacles must have gone before a particle without a slot can see one [m]
+  std::vector<float> apart_;  ///< the way the obstacles may go before a particle without a slot can see one [m]
   std::vector<WallNeighbour<Dim>> neighbours_;
   std::vector<View> views_;  ///< of each of them
   std::optional<SampleKernel> sample_kernel_;  ///< in 3D

@@ -39,7 +39,8 @@ void expect_all_pairs(std::vector<Vec<Dim>> points, double radius) {
     const NeighbourLists::Row row = lists.read(i, buffer.data());
     ASSERT_EQ(row.neighbours.size(), expected.size());
     ASSERT_EQ(row.padded.size() % 8, 0u);
-    for (const auto k : row.padded.subspan(row.neighbours.size())) ASSERT_EQ(k, static_cast<std::int32_t>(i)) << "rows are padded with the particle itself";
+    for (const auto k : row.padded.subspan(row.neighbours.size()))
+      ASSERT_EQ(k, static_cast<std::int32_t>(i)) << "rows are padded with the particle itself";
   }
 }
 
