@@ -105,7 +105,7 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
 template <int Dim, typename Real>
 void Solver<Dim, Real>::resize_derived() {
   const std::size_t n = particles_.size();
-  acceleration_.resize(n, RealVec::Zero());
+  specific_force_.resize(n, RealVec::Zero());
   if (terms_.gas) energy_rate_.resize(n);
   if (terms_.pair.has_heat()) heat_balance_.resize(n);
   if (terms_.pair.xsph) transport_.resize(n, RealVec::Zero());
@@ -207,7 +207,7 @@ void Solver<Dim, Real>::search_neighbours(double skin) {
   reorder(free_surface_area_);
   // The rates of the last step look half a kick ahead (pack_gas), or say what gradient balances them
   // (evaluate_pressure_gradients).
-  if (terms_.gas || terms_.diffusion) reorder(acceleration_);
+  if (terms_.gas || terms_.diffusion) reorder(specific_force_);
   if (terms_.gas) reorder(energy_rate_);
   // In a periodic box particles came from across it.
   if (walls_ && terms_.periodic) walls_->reset(n);
@@ -337,7 +337,7 @@ void Solver<Dim, Real>::evaluate_pressure_gradients() {
   if (!terms_.diffusion) return;
   if (!everywhere)
     parallel_for_each(n, [&](std::size_t i) {
-      pack(i, particles_.density[i] * (parameters_.gravity - acceleration_[i].template cast<double>()));
+      pack(i, particles_.density[i] * (parameters_.gravity - acceleration(i)));
     });
   for (std::size_t k = 0; k < images_.size(); ++k)
     std::copy_n(packed_gradient_.data() + stride * static_cast<std::size_t>(images_.source[k]), stride,
@@ -403,8 +403,7 @@ void Solver<Dim, Real>::evaluate_forces() {
     else
       compute_force_sums<Dim, Real>(fields_, lists_, terms_.pair, force, begin, end, sums.data());
     for (std::size_t i = begin; i < end; ++i)
-      for (int a = 0; a < Dim; ++a)
-        acceleration_[i][a] = static_cast<Real>(sums[i - begin][a] + parameters_.gravity[a]);
+      for (int a = 0; a < Dim; ++a) specific_force_[i][a] = sums[i - begin][a];
   });
   end_stage(StepStage::forces);
   if (walls_) {
@@ -413,10 +412,6 @@ void Solver<Dim, Real>::evaluate_forces() {
     parallel_for_each(n_walled, [&](std::size_t slot) { apply_wall_forces(slot); });
     if (colliders_.has_bodies()) sum_body_loads();
   }
-  if (!particles_.driven.empty())
-    parallel_for_each(particles_.size(), [&](std::size_t i) {
-      if (is_driven(i)) acceleration_[i].setZero();
-    });
   end_stage(StepStage::wall_forces);
 }
 
@@ -429,15 +424,15 @@ void Solver<Dim, Real>::apply_wall_forces(std::size_t slot) {
   if (terms_.pair.stress)
     for (int a = 0; a < Dim; ++a)
       for (int b = 0; b < Dim; ++b) corrected_stress(a, b) = fields_.record(i)[PairFields<Dim, Real>::stress_at + a * Dim + b];
-  Vec<Dim> acceleration = acceleration_[i].template cast<double>();
+  Vec<Dim> force = specific_force_[i].template cast<double>();
   for (const WallContact<Dim>& contact : wall.contacts) {
     const PlacedObstacle<Dim>& placed = colliders_.placed()[contact.obstacle];
     const Vec<Dim> a = contact_acceleration<Dim>(contact, placed.obstacle.response, particles_.density[i], pressure(i),
                                                  corrected_stress, wall_gradient_[slot], parameters_.gravity);
-    acceleration += a;
+    force += a;
     if (placed.body) body_forces_[slot * colliders_.placed().size() + contact.obstacle] -= mass(i) * a;
   }
-  acceleration_[i] = acceleration.template cast<Real>();
+  specific_force_[i] = force.template cast<Real>();
 }
 
 /// What the fluid at walls does to rigid bodies, at the particles' places, so that body and fluid together keep their
@@ -461,9 +456,15 @@ void Solver<Dim, Real>::sum_body_loads() {
 // -------------------------------------------------------------------------------------------------------------- leap-frog
 
 template <int Dim, typename Real>
+Vec<Dim> Solver<Dim, Real>::acceleration(std::size_t i) const {
+  if (is_driven(i)) return Vec<Dim>::Zero();
+  return specific_force_[i].template cast<double>() + parameters_.gravity;
+}
+
+template <int Dim, typename Real>
 void Solver<Dim, Real>::kick(double dt) {
   parallel_for_each(particles_.size(),
-                    [&](std::size_t i) { particles_.velocity[i] += dt * acceleration_[i].template cast<double>(); });
+                    [&](std::size_t i) { particles_.velocity[i] += dt * acceleration(i); });
   if (terms_.gas)
     parallel_for_each(particles_.size(), [&](std::size_t i) { particles_.internal_energy[i] += dt * energy_rate_[i]; });
   if (colliders_.has_bodies()) colliders_.kick_bodies(parameters_.gravity, dt);

@@ -112,7 +112,7 @@ class Solver {
 
   /// The state, in the order of the last neighbour search.
   const Particles<Dim>& particles() const { return particles_; }
-  const std::vector<RealVec>& acceleration() const { return acceleration_; }  ///< [m/s^2], same order
+  Vec<Dim> acceleration(std::size_t i) const;  ///< of particle `i` [m/s^2]; none of what a vent drives
   /// Indices from the number of particles on name periodic images.
   const NeighbourLists& neighbours() const { return lists_; }
   std::size_t n_searches() const { return n_searches_; }  ///< for neighbours, so far
@@ -232,7 +232,7 @@ class Solver {
   std::vector<double> power_density_;  ///< of each heat source of given power at weight 1, at this step [W/m^(Dim - 1)]
   HeatLedger heat_ledger_;
   std::vector<HeatBalance<Dim, Real>> heat_balance_;  ///< empty without heat
-  std::vector<RealVec> acceleration_;
+  std::vector<RealVec> specific_force_;  ///< of pairs and walls [m/s^2]: gravity has more digits
   std::vector<Real> energy_rate_;  ///< of an ideal gas [W/kg], or empty
   std::vector<Vec<Dim>>
       body_forces_;  ///< on each obstacle by each wall neighbour [N]; like the next, empty without rigid bodies

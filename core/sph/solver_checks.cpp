@@ -36,7 +36,7 @@ TimeStepInput Solver<Dim, Real>::time_step_input() const {
       particles_.size(), Extremes{},
       [&](std::size_t i) {
         const double nu = limited_by_viscosity ? particles_.viscosity[i] / particles_.density[i] : 0.0;
-        return Extremes{particles_.velocity[i].squaredNorm(), acceleration_[i].squaredNorm(), nu};
+        return Extremes{particles_.velocity[i].squaredNorm(), acceleration(i).squaredNorm(), nu};
       },
       [](const Extremes& a, const Extremes& b) {
         return Extremes{std::max(a.speed2, b.speed2), std::max(a.acceleration2, b.acceleration2),
@@ -75,7 +75,7 @@ void Solver<Dim, Real>::check_state(double time) const {
     if (terms_.gas && !(p.internal_energy[i] > 0.0 && std::isfinite(p.internal_energy[i]))) return "the internal energy";
     if (terms_.pair.has_heat() && !(p.temperature[i] >= 0.0 && std::isfinite(p.temperature[i]))) return "the temperature (heat equation)";
     if (terms_.pair.stress && !p.stress[i].allFinite()) return "the extra stress (rheology)";
-    if (!acceleration_[i].allFinite()) return "the acceleration (pressure and stress forces)";
+    if (!specific_force_[i].allFinite()) return "the acceleration (pressure and stress forces)";
     if (!p.velocity[i].allFinite() || !p.position[i].allFinite()) return "the velocity (leap-frog)";
     if (bounded && ((p.position[i] - domain.lower).array() < 0.0 || (domain.upper - p.position[i]).array() < 0.0).any())
       return "the position (it left the domain)";

@@ -108,7 +108,7 @@ bool Solver<Dim, Real>::remove_outflow() {
   }
   if (keep.size() == particles_.size()) return false;
   for_each_array(particles_, [&](auto& values) { keep_only(values, keep); });
-  keep_only(acceleration_, keep);  // the first half of the next kick, and the drift after it
+  keep_only(specific_force_, keep);  // the first half of the next kick, and the drift after it
   keep_only(transport_, keep);
   keep_only(heat_balance_, keep);
   keep_only(clearance_, keep);

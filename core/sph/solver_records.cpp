@@ -87,7 +87,7 @@ template <int Dim, typename Real>
 void Solver<Dim, Real>::pack_gas(std::size_t i, double dt) {
   using Fields = PairFields<Dim, Real>;
   const double ahead = 0.5 * dt;
-  const Vec<Dim> velocity = particles_.velocity[i] + ahead * acceleration_[i].template cast<double>();
+  const Vec<Dim> velocity = particles_.velocity[i] + ahead * acceleration(i);
   const double e = particles_.internal_energy[i] + ahead * energy_rate_[i];
   const double rho = particles_.density[i];
   Real* record = fields_.record(i);

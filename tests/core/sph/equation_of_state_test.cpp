@@ -60,7 +60,7 @@ double push(const EquationOfState& state, double density) {
   m.rheology.consistency = {0.0, 0.0};
   Solver<1, double> solver(parameters, {m}, {}, p);
   solver.prepare();
-  return solver.acceleration()[1][0];
+  return solver.acceleration(1)[0];
 }
 
 TEST(EquationOfState, SolverUsesTheLawItIsGiven) {

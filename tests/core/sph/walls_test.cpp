@@ -104,7 +104,7 @@ TEST(Walls, FreeSlipCarriesNoShear) {
   plane.response.friction = 1.0;
   Solver<2, double> solver(make_parameters<2>(), {make_fluid()}, one(std::move(plane)), std::move(p));
   solver.prepare();
-  for (const auto& a : solver.acceleration()) EXPECT_NEAR(a[0], 0.0, 1e-11);
+  for (std::size_t i = 0; i < solver.particles().size(); ++i) EXPECT_NEAR(solver.acceleration(i)[0], 0.0, 1e-11);
 }
 
 // Seen from below, the same sheet is the same wall, whichever way it is wound.
@@ -122,7 +122,7 @@ TEST(Walls, ASheetHasTwoSides) {
     Solver<2, double> solver(make_parameters<2>(), {make_fluid()}, one(make_plane<2>(0.0, facing_up)), std::move(p));
     solver.prepare();
     std::vector<Vec<2>> by_id(solver.particles().size());
-    for (std::size_t i = 0; i < by_id.size(); ++i) by_id[static_cast<std::size_t>(solver.particles().id[i])] = solver.acceleration()[i];
+    for (std::size_t i = 0; i < by_id.size(); ++i) by_id[static_cast<std::size_t>(solver.particles().id[i])] = solver.acceleration(i);
     return by_id;
   };
   const auto above = accelerations(true, true);
@@ -145,7 +145,7 @@ TEST(Walls, OnlyObstaclesThatAreWallsAddAnything) {
     solver.prepare();
     double lowest_row = 0.0;
     for (std::size_t i = 0; i < solver.particles().size(); ++i)
-      if (solver.particles().position[i][1] < spacing) lowest_row = solver.acceleration()[i][1];
+      if (solver.particles().position[i][1] < spacing) lowest_row = solver.acceleration(i)[1];
     return lowest_row;
   };
   // Pressed fluid leaves through an open side, and stays where a wall holds it up.
