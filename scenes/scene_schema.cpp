@@ -193,7 +193,7 @@ void visit_heat_source(SchemaVisitor& v, HeatSourceSettings& s) {
 }
 
 void visit_simulation(SchemaVisitor& v, Scene& s) {
-  v.table({"particles", "how finely bodies are divided. Give `count` or `spacing_m`"}, nullptr, [&] {
+  v.table({"particles", "how finely bodies are divided: a cubic lattice fills them, and more particles the rims and fins that are too thin for it. Give `count` or `spacing_m`"}, nullptr, [&] {
     v.integer({"count", "particles in all bodies together, met to 1 %", "see spacing_m"}, s.particles.count, {1, 2e9});
     v.number({"spacing_m", "distance between particles", "follows from count"}, s.particles.spacing, positive);
     v.number({"jitter", "random shift at the start, as a fraction of the spacing"}, s.particles.jitter, {0.0, 0.49});

@@ -55,12 +55,11 @@ Measurement run_bunny(std::size_t method, double across) {
   const CpuClock clock;
   const SurfaceMesh surface = build_surface(make_frame(seeds.positions, seeds.spacing), with_kernels(anisotropic));
   Measurement measured{.cpu_seconds = clock.seconds(), .n_particles = seeds.positions.size()};
-  const auto always = [](const Vec3&) { return true; };
   if (quantity == Quantity::volume) {
     measured.error = std::abs(compute_volume(surface.mesh) / seeds.volume - 1.0);
   } else {
     const double limit = 8.0 * seeds.spacing;
-    measured.error = std::max(distances(surface.mesh, bunny, limit, always).largest, distances(bunny, surface.mesh, limit, always).largest) / height;
+    measured.error = std::max(distances(surface.mesh, bunny, limit).largest, distances(bunny, surface.mesh, limit).largest) / height;
   }
   return measured;
 }
@@ -120,7 +119,7 @@ BallErrors measure_ball(const SurfaceMesh& surface, const ParticleFrame& frame, 
   return errors;
 }
 
-Distances distances(const TriangleMesh& from, const TriangleMesh& to, double limit, const std::function<bool(const Vec3&)>& counts) {
+Distances distances(const TriangleMesh& from, const TriangleMesh& to, double limit) {
   const SimplexBvh<3> nearest(simplices(to));
   Distances out;
   double area = 0.0;
@@ -129,17 +128,12 @@ Distances distances(const TriangleMesh& from, const TriangleMesh& to, double lim
     const double of_face = 0.5 * (b - a).cross(c - a).norm();
     for (const Vec3& x : {a, b, c, Vec3((a + b + c) / 3.0)}) {
       const double d = nearest.distance(x, limit);
-      out.largest_of_all = std::max(out.largest_of_all, d);
-      if (counts(x))
-        out.largest = std::max(out.largest, d);
-      else
-        out.share_left_out += 0.25 * of_face;
+      out.largest = std::max(out.largest, d);
       out.mean += 0.25 * of_face * d;
     }
     area += of_face;
   }
   out.mean /= area;
-  out.share_left_out /= area;
   return out;
 }
 

@@ -6,8 +6,6 @@
 #include "core/sph/particle_frame.h"
 #include "surfacing/surface.h"
 
-#include <functional>
-
 namespace smelt::surfacing_cases {
 
 /// Particles at rest of density 1000 kg/m^3.
@@ -32,12 +30,12 @@ struct BallErrors {
 };
 BallErrors measure_ball(const SurfaceMesh& surface, const ParticleFrame& frame, double radius);
 
-/// Distances [m] from the vertices and the middles of the faces of a mesh to another, weighted with area. Points that `counts` says no to are left
-/// out of the largest, and their area is kept apart.
+/// Distances [m] from the vertices and the middles of the faces of a mesh to another, none taken for more than `limit` [m]; the mean is weighted
+/// with area.
 struct Distances {
-  double largest = 0.0, mean = 0.0, largest_of_all = 0.0, share_left_out = 0.0;
+  double largest = 0.0, mean = 0.0;
 };
-Distances distances(const TriangleMesh& from, const TriangleMesh& to, double limit, const std::function<bool(const Vec3&)>& counts);
+Distances distances(const TriangleMesh& from, const TriangleMesh& to, double limit);
 
 Case make_sphere_case();
 Case make_bunny_case();

@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 #include "core/geometry/inside.h"
+#include "core/geometry/lattice_sites.h"
+#include "core/geometry/thin_parts.h"
 
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -14,13 +16,6 @@
 namespace smelt {
 namespace {
 
-/// Sites first + spacing (i, j, k), 0 <= i < n.x() and so on.
-struct Lattice {
-  Vec3 first;
-  double spacing;
-  Eigen::Array3i n_sites;
-};
-
 /// How a lattice sits in the bounds: from the lower corner, or about the centre with a site (0) or the middle between
 /// two sites (1/2) on it.
 struct Alignment {
@@ -30,8 +25,8 @@ struct Alignment {
 
 constexpr int max_sites_per_axis = 20000;
 
-Lattice make_lattice(const Box3& bounds, double spacing, const Alignment& alignment) {
-  Lattice lattice{Vec3::Zero(), spacing, Eigen::Array3i::Zero()};
+CubicLattice make_lattice(const Box3& bounds, double spacing, const Alignment& alignment) {
+  CubicLattice lattice{Vec3::Zero(), spacing, Eigen::Array3i::Zero()};
   for (int k = 0; k < 3; ++k) {
     double first = bounds.lower[k] + alignment.offset[k] * spacing;
     if (alignment.centred) {
@@ -51,44 +46,19 @@ Lattice make_lattice(const Box3& bounds, double spacing, const Alignment& alignm
   return lattice;
 }
 
-/// Calls visit(first, last) for each run of sites first <= i < last of row (j, k) that lies inside.
-template <typename Visit>
-void visit_row(const InsideTest& inside, const Lattice& lattice, int j, int k, std::vector<Crossing>& crossings,
-               Visit visit) {
-  inside.intersect(lattice.first.y() + j * lattice.spacing, lattice.first.z() + k * lattice.spacing, crossings);
-  int winding = 0;
-  for (std::size_t c = 0; c + 1 < crossings.size(); ++c) {
-    winding += crossings[c].winding;
-    if (winding == 0) continue;
-    const auto site_after = [&](double x) {
-      return std::clamp(static_cast<int>(std::ceil((x - lattice.first.x()) / lattice.spacing)), 0, lattice.n_sites.x());
-    };
-    visit(site_after(crossings[c].x), site_after(crossings[c + 1].x));
-  }
-}
-
-std::int64_t count_sites(const InsideTest& inside, const Lattice& lattice) {
-  std::vector<std::int64_t> of_layer(static_cast<std::size_t>(lattice.n_sites.z()), 0);
-  tbb::parallel_for(0, lattice.n_sites.z(), [&](int k) {
-    std::vector<Crossing> crossings;
-    for (int j = 0; j < lattice.n_sites.y(); ++j)
-      visit_row(inside, lattice, j, k, crossings,
-                [&](int first, int last) { of_layer[static_cast<std::size_t>(k)] += last - first; });
-  });
-  std::int64_t n = 0;
-  for (const std::int64_t m : of_layer) n += m;
-  return n;
-}
-
 /// A lattice and how many of its sites are inside.
 struct Fit {
-  Lattice lattice;
+  CubicLattice lattice;
   std::int64_t n_sites = 0;
 };
 
 /// By how much the cells of the sites inside miss the body's volume, as a fraction of it.
 double volume_error(const Fit& fit, double volume) {
   return std::abs(static_cast<double>(fit.n_sites) * std::pow(fit.lattice.spacing, 3) / volume - 1.0);
+}
+
+bool is_within(std::int64_t n, std::int64_t wanted, double allowed) {
+  return static_cast<double>(std::abs(n - wanted)) <= allowed * static_cast<double>(wanted);
 }
 
 /// The nearest to `wanted` sites wins, but only after those that fill the body.
@@ -105,7 +75,7 @@ void search_spacing(const InsideTest& inside, double volume, std::int64_t wanted
                     std::optional<Fit>& best) {
   const auto try_spacing = [&](double spacing) {
     Fit fit{make_lattice(inside.bounds(), spacing, alignment), 0};
-    fit.n_sites = count_sites(inside, fit.lattice);
+    fit.n_sites = count_sites_inside(inside, fit.lattice);
     if (!best || is_better(fit, *best, wanted, volume)) best = fit;
     return fit.n_sites;
   };
@@ -123,22 +93,52 @@ void search_spacing(const InsideTest& inside, double volume, std::int64_t wanted
     if (try_spacing(nearest * (1.0 + 1e-4 * k)) == wanted) return;
 }
 
+/// Lattices centred on the bounds are tried where the first one misses the number by more than 1 %.
 Fit fit_count(const InsideTest& inside, double volume, std::int64_t wanted) {
-  const auto is_within = [&](const Fit& fit, double allowed) {
-    return static_cast<double>(std::abs(fit.n_sites - wanted)) <= allowed * static_cast<double>(wanted);
-  };
   std::optional<Fit> best;
   search_spacing(inside, volume, wanted, {}, best);
-  for (int parity = 0; parity < 8 && !is_within(*best, 0.01); ++parity) {
+  for (int parity = 0; parity < 8 && !is_within(best->n_sites, wanted, 0.01); ++parity) {
     const Vec3 offset(parity & 1 ? 0.0 : 0.5, parity & 2 ? 0.0 : 0.5, parity & 4 ? 0.0 : 0.5);
     search_spacing(inside, volume, wanted, {true, offset}, best);
   }
-  if (!is_within(*best, 0.1))
+  return *best;
+}
+
+/// The sites of a lattice, and the places that it leaves free in thin parts.
+struct Filling {
+  Fit fit;
+  LatticeSites sites;
+  std::vector<Vec3> in_thin_parts;
+
+  std::int64_t count() const { return fit.n_sites + static_cast<std::int64_t>(in_thin_parts.size()); }
+};
+
+Filling fill(const TriangleMesh& mesh, const InsideTest& inside, const Fit& fit) {
+  Filling filling{fit, find_sites_inside(inside, fit.lattice), {}};
+  filling.in_thin_parts = fill_thin_parts(mesh, inside, filling.sites);
+  return filling;
+}
+
+/// What thin parts take is left out of the lattice, which changes them a little in turn: a few rounds settle it.
+Filling fill_to_count(const TriangleMesh& mesh, const InsideTest& inside, double volume, std::int64_t wanted) {
+  constexpr int most_rounds = 4;
+  std::int64_t of_lattice = wanted;
+  Filling filling = fill(mesh, inside, fit_count(inside, volume, of_lattice)), best = filling;
+  const auto misses_by_thin_parts = [&] {
+    return std::abs(filling.count() - wanted) > std::abs(filling.fit.n_sites - of_lattice);
+  };
+  for (int round = 0; round < most_rounds && misses_by_thin_parts(); ++round) {
+    of_lattice = wanted - static_cast<std::int64_t>(filling.in_thin_parts.size());
+    if (of_lattice <= 0) break;
+    filling = fill(mesh, inside, fit_count(inside, volume, of_lattice));
+    if (std::abs(filling.count() - wanted) < std::abs(best.count() - wanted)) best = filling;
+  }
+  if (!is_within(best.count(), wanted, 0.1))
     fail(
         "no cubic lattice puts {} particles into this mesh (10 % off is allowed); the nearest holds {}: ask for as "
         "many",
-        wanted, best->n_sites);
-  return *best;
+        wanted, best.count());
+  return best;
 }
 
 /// splitmix64's finaliser: all bits of the result depend on all bits of `x`.
@@ -160,20 +160,19 @@ Vec3 random_shift(std::uint64_t seed, int i, int j, int k) {
   return shift;
 }
 
-std::vector<Vec3> place_sites(const InsideTest& inside, const Lattice& lattice, const SeedingOptions& options) {
-  std::vector<std::vector<Vec3>> of_layer(static_cast<std::size_t>(lattice.n_sites.z()));
+std::vector<Vec3> place_sites(const InsideTest& inside, const LatticeSites& sites, const SeedingOptions& options) {
+  const CubicLattice& lattice = sites.lattice;
+  std::vector<std::vector<Vec3>> of_layer(sites.layers.size());
   tbb::parallel_for(0, lattice.n_sites.z(), [&](int k) {
-    std::vector<Crossing> crossings, crossings_of_shifted;
+    std::vector<Crossing> crossings;
     std::vector<Vec3>& layer = of_layer[static_cast<std::size_t>(k)];
-    for (int j = 0; j < lattice.n_sites.y(); ++j)
-      visit_row(inside, lattice, j, k, crossings, [&](int first, int last) {
-        for (int i = first; i < last; ++i) {
-          const Vec3 site = lattice.first + lattice.spacing * Vec3(i, j, k);
-          const Vec3 shifted = site + options.jitter * lattice.spacing * random_shift(options.seed, i, j, k);
-          const bool stays = options.jitter > 0.0 && inside.contains(shifted, crossings_of_shifted);
-          layer.push_back(stays ? shifted : site);
-        }
-      });
+    for (const SiteRun& run : sites.layers[static_cast<std::size_t>(k)])
+      for (int i = run.first; i < run.last; ++i) {
+        const Vec3 site = lattice.first + lattice.spacing * Vec3(i, run.row, k);
+        const Vec3 shifted = site + options.jitter * lattice.spacing * random_shift(options.seed, i, run.row, k);
+        const bool stays = options.jitter > 0.0 && inside.contains(shifted, crossings);
+        layer.push_back(stays ? shifted : site);
+      }
   });
   std::vector<Vec3> positions;
   for (const std::vector<Vec3>& layer : of_layer) positions.insert(positions.end(), layer.begin(), layer.end());
@@ -187,7 +186,7 @@ void check_thickness(const InsideTest& inside, double volume, const Fit& fit) {
   Fit finer = fit;
   while (volume_error(finer, volume) > 0.5 * allowed) {
     finer.lattice = make_lattice(inside.bounds(), 0.8 * finer.lattice.spacing, {});
-    finer.n_sites = count_sites(inside, finer.lattice);
+    finer.n_sites = count_sites_inside(inside, finer.lattice);
   }
   fail(
       "the mesh is too thin for particles {:.4g} m apart: {} of them fit, {:.0f} % off its volume of {:.4g} m^3 (20 % "
@@ -231,20 +230,20 @@ Seeds seed_particles(const TriangleMesh& mesh, const SeedingOptions& options) {
   const double width = options.count > 0 ? std::cbrt(volume / static_cast<double>(options.count)) : options.spacing;
   const InsideTest inside(mesh, width);
 
-  // Choose the lattice.
-  Fit fit;
+  Filling filling;
   if (options.count > 0) {
-    fit = fit_count(inside, volume, options.count);
+    filling = fill_to_count(mesh, inside, volume, options.count);
   } else {
-    fit.lattice = make_lattice(inside.bounds(), options.spacing, {});
-    fit.n_sites = count_sites(inside, fit.lattice);
+    const CubicLattice lattice = make_lattice(inside.bounds(), options.spacing, {});
+    filling = fill(mesh, inside, {lattice, count_sites_inside(inside, lattice)});
   }
-
-  check_thickness(inside, volume, fit);
+  check_thickness(inside, volume, filling.fit);
 
   Seeds seeds;
-  seeds.positions = place_sites(inside, fit.lattice, options);
-  seeds.lattice_spacing = fit.lattice.spacing;
+  seeds.positions = place_sites(inside, filling.sites, options);
+  seeds.positions.insert(seeds.positions.end(), filling.in_thin_parts.begin(), filling.in_thin_parts.end());
+  seeds.n_in_thin_parts = filling.in_thin_parts.size();
+  seeds.lattice_spacing = filling.fit.lattice.spacing;
   seeds.spacing = std::cbrt(volume / static_cast<double>(seeds.positions.size()));
   seeds.volume = volume;
   return seeds;
