@@ -1,5 +1,5 @@
 // The whole size of tests/stability/containers_test.cpp: 10^5 spheres for 10^4 steps in each container. Takes hours; its figures stand in docs/accuracy.md.
-//   bench_containers [spheres] [steps] [container]
+//   bench_containers [spheres] [steps] [container] [seed]
 
 #include "tests/stability/containers.h"
 
@@ -14,6 +14,7 @@ int main(int argc, char** argv) {
   ShakeOptions options;
   options.n_particles = argc > 1 ? std::atoi(argv[1]) : 100000;
   options.n_steps = argc > 2 ? std::atoi(argv[2]) : 10000;
+  options.seed = argc > 4 ? std::strtoull(argv[4], nullptr, 10) : 1;
   fmt::print("| container | triangles | spheres | steps | lost | deepest / radius | moves that hit | way of a step / radius | us a move |\n");
   fmt::print("|---|---|---|---|---|---|---|---|---|\n");
   bool sound = true;

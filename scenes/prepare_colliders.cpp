@@ -80,7 +80,6 @@ void warn_about_cuts(const std::string& name, const TriangleMesh& mesh, double s
   std::vector<Simplex<3>> facets;
   for (const auto& t : mesh.triangles) facets.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
   const SimplexBvh<3> bvh(std::move(facets));
-  std::vector<std::uint32_t> found;
   // Particles by the cell of their lattice, to know where another one is.
   const auto cell_of = [&](const Vec3& x) {
     const Eigen::Array3i c = (x / spacing).array().floor().cast<int>();
@@ -91,17 +90,15 @@ void warn_about_cuts(const std::string& name, const TriangleMesh& mesh, double s
   std::sort(cells.begin(), cells.end());
   std::size_t n_cut = 0;
   Vec3 where = Vec3::Zero();
+  const double reach = 1.01 * spacing;
   for (const Vec3& x : setup.particles.position) {
-    found.clear();
-    bvh.find_near(x, spacing, found);
-    if (found.empty()) continue;
+    if (bvh.distance(x, reach) >= reach) continue;
     bool cut = false;
     for (int way = 0; way < 6 && !cut; ++way) {
       Vec3 step = Vec3::Zero();
       step[way / 2] = way % 2 ? -spacing : spacing;
       if (!std::binary_search(cells.begin(), cells.end(), cell_of(x + step))) continue;
-      cut = std::any_of(found.begin(), found.end(),
-                        [&](std::uint32_t f) { return sweep_sphere<3>(x, step, 1e-3 * spacing, bvh.simplices()[f]).has_value(); });
+      cut = bvh.first_contact(x, step, 1e-3 * spacing).has_value();
     }
     if (cut && n_cut++ == 0) where = x;
   }

@@ -74,15 +74,19 @@ Vec3 exact_cross(const Vec3& a, const Vec3& b) {
           difference_of_products(a[0], b[1], a[1], b[0])};
 }
 
+/// By winding, as long as twice the area.
+Vec3 normal_of(const Simplex<3>& t) {
+  return exact_cross(t[1] - t[0], t[2] - t[0]);
+}
+
 bool inside_triangle(const Vec3& p, const Simplex<3>& t, const Vec3& normal) {
   for (int k = 0; k < 3; ++k)
     if ((t[(k + 1) % 3] - t[k]).cross(p - t[k]).dot(normal) < 0.0) return false;
   return true;
 }
 
-void sweep_face(const Vec3& centre, const Vec3& displacement, double radius, const Simplex<3>& t,
+void sweep_face(const Vec3& centre, const Vec3& displacement, double radius, const Simplex<3>& t, Vec3 normal,
                 std::optional<SweepContact<3>>& best) {
-  Vec3 normal = exact_cross(t[1] - t[0], t[2] - t[0]);
   const double length = normal.norm();
   if (length == 0.0) return;
   normal /= length;
@@ -97,6 +101,12 @@ void sweep_face(const Vec3& centre, const Vec3& displacement, double radius, con
   const double time = gap < 0.0 && gap > -rounding ? 0.0 : gap / approach;
   if (time < 0.0 || time > 1.0) return;
   if (inside_triangle(centre + time * displacement, t, normal)) keep_earlier<3>(best, time, side * normal);
+}
+
+/// A little more than a distance [m] of places near `offset`, whatever rounding does.
+template <int Dim>
+double surely_beyond(double distance, const Vec<Dim>& offset) {
+  return (1.0 + 1e-6) * distance + 1e-12 * offset.template lpNorm<1>();
 }
 
 /// Whether the boxes of the simplex and of the moving sphere are apart: most of what a broad phase hands over.
@@ -125,7 +135,7 @@ Vec<2> closest_point<2>(const Vec<2>& p, const Simplex<2>& segment) {
 
 template <>
 Vec3 closest_point<3>(const Vec3& p, const Simplex<3>& t) {
-  const Vec3 normal = exact_cross(t[1] - t[0], t[2] - t[0]);
+  const Vec3 normal = normal_of(t);
   const double area2 = normal.squaredNorm();
   if (area2 > 0.0) {
     const Vec3 foot = p - (p - t[0]).dot(normal) / area2 * normal;
@@ -141,19 +151,30 @@ Vec3 closest_point<3>(const Vec3& p, const Simplex<3>& t) {
 
 template <int Dim>
 std::optional<SweepContact<Dim>> sweep_sphere(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius,
-                                              const Simplex<Dim>& simplex) {
+                                              const Simplex<Dim>& simplex, double until) {
   if (boxes_are_apart<Dim>(centre, displacement, radius, simplex)) return std::nullopt;
-  // In contact at the start: what counts is whether it moves deeper.
+  const Vec<Dim> offset = centre - simplex[0];
+  // Most of the rest pass by on one side of the triangle's plane.
+  bool apart_at_start = false;
+  Vec<Dim> normal = Vec<Dim>::Zero();
+  if constexpr (Dim == 3) {
+    normal = normal_of(simplex);
+    const double start = offset.dot(normal), end = start + until * displacement.dot(normal);
+    const double clear = surely_beyond<3>(radius, offset), clear2 = clear * clear * normal.squaredNorm();
+    apart_at_start = start * start > clear2;
+    if (apart_at_start && end * end > clear2 && (start > 0.0) == (end > 0.0)) return std::nullopt;
+  }
   const Vec<Dim> from_obstacle = centre - closest_point<Dim>(centre, simplex);
   const double distance = from_obstacle.norm();
+  // In contact at the start: what counts is whether it moves deeper. From a place on the obstacle itself every way leads out.
   if (distance <= radius) {
-    // From a place on the obstacle itself every way leads out.
     if (distance == 0.0 || displacement.dot(from_obstacle) >= 0.0) return std::nullopt;
     return SweepContact<Dim>{0.0, from_obstacle / distance};
   }
+  if (distance > surely_beyond<Dim>(radius + until * displacement.norm(), offset)) return std::nullopt;
 
   std::optional<SweepContact<Dim>> best;
-  if constexpr (Dim == 3) sweep_face(centre, displacement, radius, simplex, best);
+  if constexpr (Dim == 3) sweep_face(centre, displacement, radius, simplex, normal, best);
   if constexpr (Dim >= 2)
     for (int k = 0; k < (Dim == 3 ? 3 : 1); ++k)
       sweep_edge<Dim>(centre, displacement, radius, simplex[k], simplex[(k + 1) % Dim], best);
@@ -161,8 +182,8 @@ std::optional<SweepContact<Dim>> sweep_sphere(const Vec<Dim>& centre, const Vec<
   return best;
 }
 
-template std::optional<SweepContact<1>> sweep_sphere<1>(const Vec<1>&, const Vec<1>&, double, const Simplex<1>&);
-template std::optional<SweepContact<2>> sweep_sphere<2>(const Vec<2>&, const Vec<2>&, double, const Simplex<2>&);
-template std::optional<SweepContact<3>> sweep_sphere<3>(const Vec<3>&, const Vec<3>&, double, const Simplex<3>&);
+template std::optional<SweepContact<1>> sweep_sphere<1>(const Vec<1>&, const Vec<1>&, double, const Simplex<1>&, double);
+template std::optional<SweepContact<2>> sweep_sphere<2>(const Vec<2>&, const Vec<2>&, double, const Simplex<2>&, double);
+template std::optional<SweepContact<3>> sweep_sphere<3>(const Vec<3>&, const Vec<3>&, double, const Simplex<3>&, double);
 
 }  // namespace smelt

@@ -45,28 +45,21 @@ void set_end(PlacedObstacle<Dim>& placed, double dt) {
 /// The first facet of `b` that a corner of `a` meets within a skin of `skin` on its way through the step, in b's frame.
 template <int Dim>
 std::optional<SweepContact<Dim>> sweep_corner(const PlacedObstacle<Dim>& a, const PlacedObstacle<Dim>& b, const Vec<Dim>& corner, double skin,
-                                              Vec<Dim>& way, std::vector<std::uint32_t>& found) {
+                                              Vec<Dim>& way) {
   const Vec<Dim> from = b.begin.to_rest(a.begin.to_world(corner));
   way = b.end.to_rest(a.end.to_world(corner)) - from;
-  found.clear();
-  b.bvh.find_near(from, way.norm() + skin, found);
-  std::optional<SweepContact<Dim>> first;
-  for (const std::uint32_t facet : found) {
-    const auto contact = sweep_sphere<Dim>(from, way, skin, b.bvh.simplices()[facet]);
-    if (contact && (!first || contact->time < first->time)) first = contact;
-  }
-  return first;
+  const auto first = b.bvh.first_contact(from, way, skin);
+  return first ? std::optional(first->contact) : std::nullopt;
 }
 
 /// Whether a body can meet an obstacle at all in this step.
 template <int Dim>
-bool may_meet(const PlacedObstacle<Dim>& a, const PlacedObstacle<Dim>& b, std::vector<std::uint32_t>& found) {
+bool may_meet(const PlacedObstacle<Dim>& a, const PlacedObstacle<Dim>& b) {
   const Vec<Dim> centre = a.begin.to_world(a.pivot);
   const double way = (a.end.to_world(a.pivot) - centre).norm() + a.reach * skew_angle<Dim>(a.turn) +
                      (b.end.to_world(b.pivot) - b.begin.to_world(b.pivot)).norm() + b.reach * skew_angle<Dim>(b.turn);
-  found.clear();
-  b.bvh.find_near(b.begin.to_rest(centre), a.reach * (1.0 + skin_over_reach) + way, found);
-  return !found.empty();
+  const double reach = a.reach * (1.0 + skin_over_reach) + way;
+  return b.bvh.distance(b.begin.to_rest(centre), reach) < reach;
 }
 
 /// Adds what the corners of `a` meet of `b` and have not met before; returns whether anything was added.
@@ -74,12 +67,11 @@ template <int Dim>
 bool find_contacts(const std::vector<PlacedObstacle<Dim>>& placed, std::size_t a, std::size_t b, double dt, std::vector<Contact<Dim>>& contacts) {
   const PlacedObstacle<Dim>&body = placed[a], &other = placed[b];
   const double skin = skin_over_reach * body.reach;
-  std::vector<std::uint32_t> found;
-  if (!may_meet(body, other, found)) return false;
+  if (!may_meet(body, other)) return false;
   const std::size_t before = contacts.size();
   for (std::size_t k = 0; k < body.corners.size(); ++k) {
     Vec<Dim> way;
-    const auto hit = sweep_corner(body, other, body.corners[k], skin, way, found);
+    const auto hit = sweep_corner(body, other, body.corners[k], skin, way);
     if (!hit) continue;
     const Vec<Dim> at = body.begin.to_world(body.corners[k]), normal = other.begin.rotation * hit->normal;
     const bool known = std::any_of(contacts.begin(), contacts.end(), [&](const Contact<Dim>& c) {
@@ -143,12 +135,11 @@ void return_impulses(std::vector<PlacedObstacle<Dim>>& placed, std::vector<Conta
 /// The share of the step after which a corner comes within half a skin of a facet: what the impulses have left.
 template <int Dim>
 double first_passage(const std::vector<PlacedObstacle<Dim>>& placed, std::size_t a, std::size_t b) {
-  std::vector<std::uint32_t> found;
   double share = 1.0;
-  if (!may_meet(placed[a], placed[b], found)) return share;
+  if (!may_meet(placed[a], placed[b])) return share;
   Vec<Dim> way;
   for (const Vec<Dim>& corner : placed[a].corners)
-    if (const auto hit = sweep_corner(placed[a], placed[b], corner, 0.5 * skin_over_reach * placed[a].reach, way, found))
+    if (const auto hit = sweep_corner(placed[a], placed[b], corner, 0.5 * skin_over_reach * placed[a].reach, way))
       share = std::min(share, hit->time);
   return share;
 }

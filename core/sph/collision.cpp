@@ -15,16 +15,6 @@ namespace {
 template <int Dim>
 using Obstacles = std::vector<PlacedObstacle<Dim>>;
 
-/// The facets near a sphere: those of one obstacle are facets [begin, end).
-struct Nearby {
-  struct Group {
-    std::uint32_t obstacle;
-    std::size_t begin, end;
-  };
-  std::vector<Group> groups;
-  std::vector<std::uint32_t> facets;
-};
-
 /// A sphere on its way through a step.
 template <int Dim>
 struct Moving {
@@ -60,61 +50,25 @@ double radius_at(const PlacedObstacle<Dim>& placed, double radius) {
   return (placed.obstacle.wall ? Colliders<Dim>::wall_guard : 1.0) * radius;
 }
 
-/// Broad phase, once for the whole step.
-template <int Dim>
-void find_near(const Obstacles<Dim>& placed, const Vec<Dim>& position, double reach, Nearby& near) {
-  near.groups.clear();
-  near.facets.clear();
-  for (std::uint32_t o = 0; o < placed.size(); ++o) {
-    const std::size_t before = near.facets.size();
-    if (placed[o].gone) continue;
-    placed[o].bvh.find_near(placed[o].begin.to_rest(position), reach, near.facets);
-    if (near.facets.size() != before) near.groups.push_back({o, before, near.facets.size()});
-  }
-}
-
-/// Whether all of a facet is farther off than `distance` along some axis.
-template <int Dim>
-bool is_beyond(const Vec<Dim>& x, double distance, const Simplex<Dim>& facet) {
-  for (int axis = 0; axis < Dim; ++axis) {
-    bool above = true, below = true;
-    for (const Vec<Dim>& corner : facet) {
-      above = above && corner[axis] > x[axis] + distance;
-      below = below && corner[axis] < x[axis] - distance;
-    }
-    if (above || below) return true;
-  }
-  return false;
-}
-
 /// Moves a sphere out of what it overlaps, the nearest first, as far as its centre gets without passing another facet.
 template <int Dim>
-void push_out(const Obstacles<Dim>& obstacles, const Nearby& near, double radius, Vec<Dim>& position) {
-  for (const auto& group : near.groups) {
-    const PlacedObstacle<Dim>& placed = obstacles[group.obstacle];
-    const auto facet = [&](std::size_t k) -> const Simplex<Dim>& { return placed.bvh.simplices()[near.facets[k]]; };
+void push_out(const Obstacles<Dim>& obstacles, double radius, Vec<Dim>& position) {
+  for (const PlacedObstacle<Dim>& placed : obstacles) {
+    if (placed.gone) continue;
     const double least = radius_at(placed, radius);
     Vec<Dim> local = placed.begin.to_rest(position);
     bool moved = false;
     for (int pass = 0; pass < Colliders<Dim>::max_bounces; ++pass) {
-      double nearest = least;
-      std::size_t touched = group.end;
-      Vec<Dim> out = Vec<Dim>::Zero();
-      for (std::size_t k = group.begin; k < group.end; ++k) {
-        if (is_beyond<Dim>(local, nearest, facet(k))) continue;
-        const Vec<Dim> from = local - closest_point<Dim>(local, facet(k));
-        if (!(from.norm() < nearest)) continue;
-        nearest = from.norm();
-        touched = k;
-        out = from;
-      }
-      if (touched == group.end) break;
+      const auto touched = placed.bvh.nearest(local, least);
+      if (!touched) break;
       // From a place on the facet itself, to its front.
-      Vec<Dim> way = nearest > 0.0 ? Vec<Dim>((least - nearest) / nearest * out) : Vec<Dim>(least * facet_normal<Dim>(facet(touched)));
+      const double distance = touched->distance;
+      const Vec<Dim> way = distance > 0.0 ? Vec<Dim>((least - distance) / distance * touched->offset)
+                                          : Vec<Dim>(least * facet_normal<Dim>(placed.bvh.simplices()[touched->simplex]));
       double share = 1.0;
-      for (std::size_t k = group.begin; k < group.end; ++k)
-        if (k != touched)
-          if (const auto hit = sweep_sphere<Dim>(local, way, Colliders<Dim>::squeezed * least, facet(k))) share = std::min(share, hit->time);
+      // Nothing is nearer than what it leaves: there may be something in the way only if it comes from deep inside.
+      if (distance < 0.51 * least)
+        if (const auto hit = placed.bvh.first_contact(local, way, Colliders<Dim>::squeezed * least, touched->simplex)) share = hit->contact.time;
       local += share * way;
       moved = true;
     }
@@ -122,13 +76,12 @@ void push_out(const Obstacles<Dim>& obstacles, const Nearby& near, double radius
   }
 }
 
-/// Into how many equal legs the step is cut: over a turn by a, the chord leaves an arc of radius R by R a^2/8.
+/// Into how many equal legs the step is cut by what turns within `reach`: over a turn by a, the chord leaves an arc of radius R by R a^2/8.
 template <int Dim>
-int count_legs(const Obstacles<Dim>& obstacles, const Nearby& near, double radius) {
+int count_legs(const Obstacles<Dim>& obstacles, const Vec<Dim>& position, double reach, double radius) {
   double legs = 1.0;
-  for (const auto& group : near.groups) {
-    const PlacedObstacle<Dim>& placed = obstacles[group.obstacle];
-    if (!placed.turning()) continue;
+  for (const PlacedObstacle<Dim>& placed : obstacles) {
+    if (!placed.turning() || placed.gone || placed.bvh.distance(placed.begin.to_rest(position), reach) >= reach) continue;
     legs = std::max(legs, std::ceil(skew_angle<Dim>(placed.turn) * std::sqrt((placed.reach + radius) / (0.8 * radius_at(placed, radius)))));
   }
   return static_cast<int>(legs);
@@ -145,18 +98,16 @@ Way<Dim> find_way(const Moving<Dim>& m, double leg_end, double dt) {
 
 /// Each obstacle sees the way in its own frame.
 template <int Dim>
-FirstHit<Dim> find_first_hit(const Obstacles<Dim>& obstacles, const Nearby& near, double radius, const Moving<Dim>& sphere,
-                             const Way<Dim>& straight, double leg_end) {
+FirstHit<Dim> find_first_hit(const Obstacles<Dim>& obstacles, double radius, const Moving<Dim>& sphere, const Way<Dim>& straight, double leg_end) {
   FirstHit<Dim> first;
-  for (const auto& group : near.groups) {
-    const PlacedObstacle<Dim>& placed = obstacles[group.obstacle];
+  for (std::uint32_t o = 0; o < obstacles.size(); ++o) {
+    const PlacedObstacle<Dim>& placed = obstacles[o];
+    if (placed.gone) continue;
     const Vec<Dim> from = placed.pose(sphere.share).to_rest(sphere.position);
     const Vec<Dim> way = &placed == sphere.carrier ? straight.in_carrier : Vec<Dim>(placed.pose(leg_end).to_rest(straight.goal) - from);
-    for (std::size_t k = group.begin; k < group.end; ++k) {
-      const auto contact = sweep_sphere<Dim>(from, way, radius_at(placed, radius), placed.bvh.simplices()[near.facets[k]]);
-      if (contact && (!first.touched || contact->time < first.time))
-        first = {&placed, group.obstacle, contact->time, contact->normal, from + contact->time * way};
-    }
+    const auto hit = placed.bvh.first_contact(from, way, radius_at(placed, radius));
+    if (hit && (!first.touched || hit->contact.time < first.time))
+      first = {&placed, o, hit->contact.time, hit->contact.normal, from + hit->contact.time * way};
   }
   return first;
 }
@@ -377,18 +328,12 @@ bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, V
   // A response never lengthens the path relative to what was hit, and each obstacle comes nearer by its own way: twice the longest, since it
   // may be returned. Twice the radius: a sphere that starts inside an obstacle is first moved out, by up to its radius.
   const double reach = 2.0 * radius + dt * (transport.norm() + 2.0 * max_slide_) + 3.0 * step_way_;
-  thread_local Nearby near;
-  find_near<Dim>(placed_, position, reach, near);
-  if (near.groups.empty()) {
-    position += dt * transport;
-    return false;
-  }
-  push_out<Dim>(placed_, near, radius, position);
+  const int n_legs = count_legs<Dim>(placed_, position, reach, radius);
+  push_out<Dim>(placed_, radius, position);
 
   Moving<Dim> sphere{position, transport, velocity};
   sphere.hits = hits;
   int bounces = 0;
-  const int n_legs = count_legs<Dim>(placed_, near, radius);
   for (int leg = 1; leg <= n_legs; ++leg) {
     const double leg_end = leg == n_legs ? 1.0 : static_cast<double>(leg) / n_legs;
     while (sphere.share < leg_end) {
@@ -396,7 +341,7 @@ bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, V
       // Only what moves can press a sphere flat. Past facets at rest, more bounces are a corner: there it waits, whole, for the next step.
       const bool pressed = step_way_ > 0.0;
       const double girth = (pressed && bounces >= max_bounces ? squeezed : 1.0) * radius;
-      const FirstHit<Dim> hit = find_first_hit<Dim>(placed_, near, girth, sphere, straight, leg_end);
+      const FirstHit<Dim> hit = find_first_hit<Dim>(placed_, girth, sphere, straight, leg_end);
       if (!hit.touched) {
         arrive<Dim>(sphere, straight.goal, leg_end);
         break;

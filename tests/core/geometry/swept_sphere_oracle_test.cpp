@@ -337,15 +337,10 @@ TEST(SweptSphereOracle, EarliestHitInASoup) {
     Cases cases(1000 + static_cast<std::uint64_t>(k));
     const std::vector<Simplex<3>> soup = make_soup(cases);
     const SimplexBvh<3> bvh(soup);
-    std::vector<std::uint32_t> found;
     for (int trial = 0; trial < n_sweeps; ++trial) {
       const Sweep s = sweep_at(cases, soup[static_cast<std::size_t>(cases.one_of(static_cast<int>(soup.size())))]);
-      found.clear();
-      bvh.find_near(s.centre, s.radius + s.displacement.norm(), found);
-      double time = std::numeric_limits<double>::infinity();
-      for (const std::uint32_t f : found)
-        if (const auto contact = sweep_sphere<3>(s.centre, s.displacement, s.radius, soup[f]))
-          time = std::min(time, contact->time);
+      const auto first = bvh.first_contact(s.centre, s.displacement, s.radius);
+      const double time = first ? first->contact.time : std::numeric_limits<double>::infinity();
       n_hits += time <= 1.0;
 
       // Every triangle, near or not.

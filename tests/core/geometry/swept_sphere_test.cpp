@@ -4,8 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <cmath>
 #include <random>
+#include <string>
 
 namespace smelt {
 namespace {
@@ -90,27 +91,93 @@ TEST(SweepSphere, CirclesMeetSegmentsIn2D) {
   EXPECT_NEAR(end->time, 0.25, 1e-14);
 }
 
-TEST(SimplexBvh, FindsAllThatAreNear) {
-  std::mt19937 random(8);
+/// Simplices of every size, some twice and some without area, in a cube 20 wide at `place`.
+template <int Dim>
+std::vector<Simplex<Dim>> make_simplices(std::mt19937& random, std::size_t n, const Vec<Dim>& place) {
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  const auto point = [&] { return Vec3(uniform(random), uniform(random), uniform(random)); };
-  std::vector<Simplex<3>> triangles;
-  for (int k = 0; k < 2000; ++k) {
-    const Vec3 at = 10.0 * point();
-    triangles.push_back({at, at + point(), at + 0.3 * point()});
+  const auto point = [&] { return Vec<Dim>(Vec<Dim>::NullaryExpr([&] { return uniform(random); })); };
+  std::vector<Simplex<Dim>> simplices;
+  while (simplices.size() < n) {
+    Simplex<Dim> simplex;
+    const Vec<Dim> at = place + 10.0 * point();
+    const double size = std::pow(10.0, uniform(random) - 1.0);
+    for (Vec<Dim>& corner : simplex) corner = at + size * point();
+    if (simplices.size() % 9 == 0) simplex.back() = simplex.front();
+    simplices.push_back(simplex);
+    if (simplices.size() % 7 == 0) simplices.push_back(simplex);
   }
-  const SimplexBvh<3> bvh(triangles);
+  simplices.resize(n);
+  return simplices;
+}
+
+/// The first contact of all simplices but one, one by one.
+template <int Dim>
+std::optional<FirstContact<Dim>> sweep_all(const std::vector<Simplex<Dim>>& simplices, const Vec<Dim>& at, const Vec<Dim>& way, double radius,
+                                           std::uint32_t except) {
+  std::optional<FirstContact<Dim>> first;
+  for (std::uint32_t k = 0; k < simplices.size(); ++k) {
+    if (k == except) continue;
+    const auto contact = sweep_sphere<Dim>(at, way, radius, simplices[k]);
+    if (contact && (!first || contact->time < first->contact.time)) first = {k, *contact};
+  }
+  return first;
+}
+
+/// Queries of one set against all of its simplices one by one.
+template <int Dim>
+void test_queries(std::size_t n, const Vec<Dim>& place, int& n_hits) {
+  std::mt19937 random(static_cast<unsigned>(8 + n));
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const auto point = [&] { return Vec<Dim>(Vec<Dim>::NullaryExpr([&] { return uniform(random); })); };
+  const std::vector<Simplex<Dim>> simplices = make_simplices<Dim>(random, n, place);
+  const SimplexBvh<Dim> bvh(simplices);
   for (int trial = 0; trial < 300; ++trial) {
-    const Vec3 at = 10.0 * point();
-    const double radius = std::abs(uniform(random));
-    std::vector<std::uint32_t> found;
-    bvh.find_near(at, radius, found);
-    EXPECT_TRUE(std::is_sorted(found.begin(), found.end()));
-    for (std::uint32_t k = 0; k < triangles.size(); ++k)
-      if ((at - closest_point<3>(at, triangles[k])).norm() < radius) {
-        ASSERT_TRUE(std::binary_search(found.begin(), found.end(), k)) << "triangle " << k << ", trial " << trial;
+    const std::string which = std::to_string(n) + " simplices, trial " + std::to_string(trial);
+    const Vec<Dim> at = place + 11.0 * point();
+    const double radius = std::pow(10.0, uniform(random) - 0.5);
+    std::vector<std::uint32_t> near, found;
+    double nearest = 10.0 * radius;
+    std::uint32_t nearest_one = SimplexBvh<Dim>::none;
+    for (std::uint32_t k = 0; k < n; ++k) {
+      const double distance = (at - closest_point<Dim>(at, simplices[k])).norm();
+      if (distance <= radius) near.push_back(k);
+      if (distance < nearest) {
+        nearest = distance;
+        nearest_one = k;
       }
+    }
+    bvh.find_near(at, radius, found);
+    EXPECT_EQ(found, near) << which;
+    EXPECT_EQ(bvh.distance(at, 10.0 * radius), nearest) << which;
+    const auto nearest_found = bvh.nearest(at, 10.0 * radius);
+    EXPECT_EQ(nearest_found ? nearest_found->simplex : SimplexBvh<Dim>::none, nearest_one) << which;
+
+    Vec<Dim> way = 10.0 * std::pow(uniform(random), 3) * point();
+    if (trial % 5 == 0) way = way.cwiseProduct(Vec<Dim>::Unit(trial / 5 % Dim));  // along an axis
+    std::uint32_t except = SimplexBvh<Dim>::none;
+    for (int round = 0; round < 2; ++round) {  // then without what was hit first
+      const auto first = sweep_all<Dim>(simplices, at, way, radius, except);
+      const auto contact = bvh.first_contact(at, way, radius, except);
+      ASSERT_EQ(contact.has_value(), first.has_value()) << which;
+      if (!contact) break;
+      EXPECT_EQ(contact->simplex, first->simplex) << which;
+      EXPECT_EQ(contact->contact.time, first->contact.time) << which;
+      EXPECT_EQ(contact->contact.normal, first->contact.normal) << which;
+      except = first->simplex;
+      ++n_hits;
+    }
   }
+}
+
+TEST(SimplexBvh, AnswersAreThoseOfEverySimplexToTheBit) {
+  int n_hits = 0;
+  for (const std::size_t n : {0, 1, 8, 9, 65, 700, 3000}) {
+    test_queries<3>(n, Vec3::Zero(), n_hits);
+    test_queries<3>(n, Vec3(3e3, -1e4, 2e3), n_hits);
+    test_queries<2>(n, Vec<2>(-1.0, 1e3), n_hits);
+    test_queries<1>(n, Vec<1>(7.0), n_hits);
+  }
+  EXPECT_GT(n_hits, 2000);
 }
 
 }  // namespace
