@@ -122,7 +122,7 @@ void Solver<Dim, Real>::prepare(double time) {
   std::fill(clearance_.begin(), clearance_.end(), 0.0F);
   if (walls_) walls_->reset(particles_.size());
   search_neighbours(least_skin());
-  if (walls_) walls_->update(colliders_, particles_.position);
+  if (walls_) walls_->update(colliders_, particles_.position, particles_.velocity, 0.0);
   if (terms_.exchange) find_free_surface();
   heat_ledger_ = {};
   pack_motion(false);
@@ -157,7 +157,7 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
 
   if (2.0 * travelled_ > skin_ * parameters_.smoothing_length) search_neighbours(best_skin(step_way_));
   end_stage(StepStage::search);
-  if (walls_) walls_->update(colliders_, particles_.position);
+  if (walls_) walls_->update(colliders_, particles_.position, particles_.velocity, dt);
   if (terms_.exchange && travelled_at_surface_ > 0.2 * parameters_.smoothing_length) find_free_surface();
   end_stage(StepStage::wall_sums);
 

@@ -137,7 +137,7 @@ void Walls<Dim>::sort_slots() {
 }
 
 template <int Dim>
-void Walls<Dim>::update(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position) {
+void Walls<Dim>::update(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> velocity, double dt) {
   CHECK_EQ(position.size(), slot_.size());
   if constexpr (Dim == 3)
     if (!sample_kernel_) {
@@ -151,7 +151,11 @@ void Walls<Dim>::update(const Colliders<Dim>& colliders, std::span<const Vec<Dim
   parallel_blocks(
       neighbours_.size(),
       [&](std::size_t begin, std::size_t end) {
-        for (std::size_t k = begin; k < end; ++k) refresh(colliders, position[static_cast<std::size_t>(neighbours_[k].particle)], k);
+        for (std::size_t k = begin; k < end; ++k) {
+          const auto i = static_cast<std::size_t>(neighbours_[k].particle);
+          // Where obstacles move, the sums are made anew at every step.
+          refresh(colliders, position[i], colliders.step_way() > 0.0 ? Vec<Dim>::Zero() : half_of_a_little(velocity[i], dt), k);
+        }
       },
       grain);
   drop_blind();
@@ -209,20 +213,31 @@ void Walls<Dim>::drop_blind() {
   views_.resize(kept);
 }
 
+/// Half of the way from one making of the sums to the next; a whole number of steps. From its beginning to its end they then are ahead
+/// of the particle and behind it by as much.
 template <int Dim>
-void Walls<Dim>::refresh(const Colliders<Dim>& colliders, const Vec<Dim>& position, std::size_t slot) {
+Vec<Dim> Walls<Dim>::half_of_a_little(const Vec<Dim>& velocity, double dt) const {
+  const double speed = velocity.norm(), step = dt * speed;
+  if (speed == 0.0) return Vec<Dim>::Zero();
+  return 0.5 / speed * (step > 0.0 ? step * std::floor(little() / step) : little()) * velocity;
+}
+
+template <int Dim>
+void Walls<Dim>::refresh(const Colliders<Dim>& colliders, const Vec<Dim>& position, const Vec<Dim>& ahead, std::size_t slot) {
   View& view = views_[slot];
   WallNeighbour<Dim>& seen = neighbours_[slot];
   if (view.way < 0.0 || (position - view.origin).norm() + way_ - view.way > slack()) {
     look_up(colliders, position, view);
     if (view.sights.empty()) return;
   }
-  // The lattice of a fluid at rest moves by less than this; it is far below what any sum changes over.
-  const double little = Dim == 3 ? 0.02 * kernel_.smoothing_length() : 0.0;
-  const Vec<Dim> moved = position - view.summed_at;
-  const bool stands = view.summed_way == way_ && moved.norm() <= little && shift(view, moved, seen);
+  const bool stands = view.summed_way == way_ && (position - view.summed_from).norm() <= little();
   if (!stands) {
+    sum(colliders, position + ahead, view);
+    view.summed_from = position;
+  }
+  if (!shift(view, position - view.summed_at, seen)) {
     sum(colliders, position, view);
+    view.summed_from = position;
     shift(view, Vec<Dim>::Zero(), seen);
   }
   for (WallContact<Dim>& contact : seen.contacts) complete(colliders.placed()[contact.obstacle], position, contact);

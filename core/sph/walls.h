@@ -48,7 +48,8 @@ struct WallNeighbour {
 };
 
 /// Which particles are near which facets, and what they see of them. Each particle's facets are looked up anew once it has moved by
-/// h/4 against them, its sums made anew once it has moved by h/50: what rests or creeps costs next to nothing.
+/// h/4 against them, its sums made anew once it has moved by h/50: what rests or creeps costs next to nothing. They are those of half that
+/// way ahead: sums that only ever lagged behind would push what slides along a curved wall.
 template <int Dim>
 class Walls {
  public:
@@ -76,8 +77,9 @@ class Walls {
   /// Particle `i` has moved by `way` [m].
   void travel(std::size_t i, double way) { apart_[i] = round_down(apart_[i] - way); }
 
-  /// What every particle sees from where it is now, after a step of the obstacles. Obstacles that are not walls are left out.
-  void update(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position);
+  /// What every particle sees from where it is now, after a step of `dt` [s] with `velocity` [m/s] and of the obstacles; before the first
+  /// step `dt` is 0. Obstacles that are not walls are left out.
+  void update(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> velocity, double dt);
 
   const std::vector<WallNeighbour<Dim>>& neighbours() const { return neighbours_; }
 
@@ -105,7 +107,8 @@ class Walls {
     std::vector<std::uint32_t> facets;     ///< to be integrated one by one
     std::vector<std::size_t> patches_end;  ///< of patches of samples, in `samples`
     std::vector<float> samples;
-    Vec<Dim> summed_at = Vec<Dim>::Zero();  ///< where the particle was when it was summed
+    Vec<Dim> summed_from = Vec<Dim>::Zero();  ///< where the particle was when it was summed
+    Vec<Dim> summed_at = Vec<Dim>::Zero();    ///< where the sums hold: a little ahead of that
     double summed_way = -1.0;               ///< -1: not summed yet
     WallNeighbour<Dim> sums;                ///< of then
   };
@@ -117,7 +120,11 @@ class Walls {
   void take_in(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position);
   void sort_slots();
   void drop_blind();
-  void refresh(const Colliders<Dim>& colliders, const Vec<Dim>& position, std::size_t slot);
+  /// So far a particle may go until its sums are made anew [m]. The lattice of a fluid at rest moves by less; it is far below what any sum
+  /// changes over.
+  double little() const { return Dim == 3 ? 0.02 * kernel_.smoothing_length() : 0.0; }
+  Vec<Dim> half_of_a_little(const Vec<Dim>& velocity, double dt) const;
+  void refresh(const Colliders<Dim>& colliders, const Vec<Dim>& position, const Vec<Dim>& ahead, std::size_t slot);
   void look_up(const Colliders<Dim>& colliders, const Vec<Dim>& position, View& view) const;
   void sum(const Colliders<Dim>& colliders, const Vec<Dim>& position, View& view) const;
   void sum_sight(const PlacedObstacle<Dim>& placed, const Vec<Dim>& local, std::size_t k, View& view) const;

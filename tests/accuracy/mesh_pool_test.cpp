@@ -11,7 +11,6 @@
 
 #include <functional>
 #include <numbers>
-#include <span>
 
 namespace smelt {
 namespace {
@@ -31,7 +30,6 @@ struct Vessel {
   Box<3> bounds;                                ///< of the water [m]
   double fill = depth;                          ///< sites up to this height are filled [m]
   Box<3> period = {Vec3::Zero(), Vec3::Zero()};
-  bool round = false;  ///< about the y axis: nothing keeps water without friction from turning
 };
 
 /// A parallelogram of triangles with edges of about `edge`, facing a x b.
@@ -116,7 +114,6 @@ Vessel bowl(double spacing) {
   v.distance = [=](const Vec3& x) { return radius - (x - centre).norm(); };
   v.normal = [=](const Vec3& x) { return Vec3((centre - x).normalized()); };
   v.fill = 0.4;
-  v.round = true;
   return v;
 }
 
@@ -210,26 +207,6 @@ double pressure_error(const Solver<3, float>& solver, const Vessel& v, double le
   return worst;
 }
 
-/// The turn about the y axis [rad] that takes places nearest to others.
-double common_turn(std::span<const Vec3> from, std::span<const Vec3> to) {
-  double along = 0.0, across = 0.0;
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    along += from[i][0] * to[i][0] + from[i][2] * to[i][2];
-    across += from[i][2] * to[i][0] - from[i][0] * to[i][2];
-  }
-  return std::atan2(across, along);
-}
-
-/// The angular velocity about the y axis [1/s] that velocities have in common.
-double common_spin(std::span<const Vec3> x, std::span<const Vec3> velocity) {
-  double moment = 0.0, inertia = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    moment += x[i][2] * velocity[i][0] - x[i][0] * velocity[i][2];
-    inertia += x[i][0] * x[i][0] + x[i][2] * x[i][2];
-  }
-  return moment / inertia;
-}
-
 void test_pool(Vessel (*make)(double), int n_deep) {
   const double duration = full_run() ? 10.0 : 6.5;
   const double spacing = depth / n_deep;
@@ -264,14 +241,9 @@ void test_pool(Vessel (*make)(double), int n_deep) {
     if (!std::isnan(worst) && !(error <= worst)) worst = error;
   }
   const auto& p = water.particles();
-  std::vector<Vec3> from(n);
-  for (std::size_t i = 0; i < n; ++i) from[i] = start[static_cast<std::size_t>(p.id[i])];
-  const double turn = v.round ? common_turn(from, p.position) : 0.0;
-  const Vec3 spin(0.0, v.round ? common_spin(p.position, p.velocity) : 0.0, 0.0);
-  const Mat<3> turned = Eigen::AngleAxisd(turn, Vec3::UnitY()).toRotationMatrix();
   for (std::size_t i = 0; i < n; ++i) {
-    speed = std::max(speed, (p.velocity[i] - spin.cross(p.position[i])).norm());
-    Vec3 way = p.position[i] - turned * from[i];
+    speed = std::max(speed, p.velocity[i].norm());
+    Vec3 way = p.position[i] - start[static_cast<std::size_t>(p.id[i])];
     if (v.period.upper[2] > 0.0) way[2] = std::remainder(way[2], v.period.upper[2]);
     drift += way.squaredNorm();
     deepest = std::max(deepest, -v.distance(p.position[i]));
@@ -282,7 +254,6 @@ void test_pool(Vessel (*make)(double), int n_deep) {
   report_row({problem, "fastest particle at the end [m/s]", resolution, speed, 0.1});
   report_row({problem, "drift of particles [spacings]; rms", resolution,
               std::sqrt(drift / static_cast<double>(n)) / spacing, 1.0});
-  if (v.round) report_row({problem, "turn of all about the axis [rad]; left out above", resolution, std::abs(turn)});
   report_row({problem, "way of a centre behind the wall [spacings]", resolution, deepest / spacing, 0.0});
 }
 
