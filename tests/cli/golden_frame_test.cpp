@@ -94,7 +94,7 @@ TEST_P(GoldenFrame, LooksAsItDid) {
 
 // The rest of scenes/thesis are links to these.
 INSTANTIATE_TEST_SUITE_P(Scenes, GoldenFrame,
-                         testing::Values(Shot{"melting_bunny"}, Shot{"chair_hand"}, Shot{"candle"}, Shot{"lava_volcano", 60, "--set particles.spacing_m=6"},
+                         testing::Values(Shot{"melting_bunny"}, Shot{"chair_hand"}, Shot{"candle"}, Shot{"lava_volcano", 28, "--set particles.spacing_m=6"},
                                          Shot{"lava_sugarloaf", 40, "--set particles.spacing_m=8"}, Shot{"thesis/wall"}, Shot{"thesis/hand"}, Shot{"thesis/candle"},
                                          Shot{"thesis/gargoyle"}, Shot{"thesis/letters", 1, "--set camera.height=77"}, Shot{"thesis/terrain", 28, "--set particles.spacing_m=6"}),
                          [](const auto& test) { return test.param.name(); });
