@@ -1,4 +1,5 @@
-// The whole size of tests/stability/containers_test.cpp: 10^5 spheres for 10^4 steps in each container. Takes hours; its figures stand in docs/accuracy.md.
+// The whole size of tests/stability/containers_test.cpp: 10^5 spheres for 10^4 steps in each container. Some 80 minutes on two cores at
+// the rates of docs/performance.md.
 //   bench_containers [spheres] [steps] [container] [seed]
 
 #include "tests/stability/containers.h"
