@@ -261,7 +261,8 @@ void Solver<Dim, Real>::evaluate_rates() {
   if (walls_ || terms_.diffusion) evaluate_pressure_gradients();
   end_stage(StepStage::wall_rates);
   parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
-    compute_rate_sums<Dim, Real>(fields_, lists_, terms_.pair, parameters_.smoothing_length, begin, end, rates_.data() + begin);
+    compute_rate_sums<Dim, Real>(fields_, lists_, terms_.pair, parameters_.smoothing_length, begin, end, rates_.data() + begin,
+                                 sighted_.empty() ? nullptr : sighted_.data() + begin);
   });
   if (terms_.diffusion) apply_density_diffusion();
   end_stage(StepStage::rates);
@@ -310,7 +311,8 @@ void Solver<Dim, Real>::apply_wall_rates(const WallNeighbour<Dim>& wall) {
   for (int a = 0; a < Dim; ++a) velocity[a] = fields_.record(i)[Fields::velocity_at + a];
   accumulate_wall_rates<Dim, Real>(wall, colliders_, terms_.pair, velocity, particles_.density[i], material(i).density,
                                    terms_.pair.has_heat() ? particles_.temperature[i] : 0.0,
-                                   terms_.pair.has_heat() ? heat_balance_[i].moment_trace : 1.0, rates_[i]);
+                                   terms_.pair.has_heat() ? heat_balance_[i].moment_trace : 1.0, rates_[i],
+                                   sighted_.empty() ? nullptr : &sighted_[i]);
 }
 
 /// With dt = 0 nothing advances, but the stress of a law without memory and the XSPH correction follow from the state.
@@ -337,13 +339,27 @@ void Solver<Dim, Real>::integrate_rates(double dt) {
 /// Advances the extra stress S and returns S L for the force pass.
 template <int Dim, typename Real>
 Mat<Dim> Solver<Dim, Real>::integrate_stress(std::size_t i, double dt) {
-  Symmetric<Dim> moment;
-  for (int k = 0; k < n_symmetric<Dim>; ++k) moment[k] = rates_[i].position_moment[k];
-  const Mat<Dim> correction = compute_gradient_correction<Dim>(to_matrix<Dim>(moment));
-  Mat<Dim> bare_gradient;
-  for (int a = 0; a < Dim; ++a)
-    for (int b = 0; b < Dim; ++b) bare_gradient(a, b) = rates_[i].velocity_moment[a * Dim + b];
-  const Mat<Dim> gradient = bare_gradient * correction;
+  const auto to_correction = [](const auto& position_moment) {
+    Symmetric<Dim> moment;
+    for (int k = 0; k < n_symmetric<Dim>; ++k) moment[k] = position_moment[k];
+    return compute_gradient_correction<Dim>(to_matrix<Dim>(moment));
+  };
+  const auto to_bare_gradient = [](const auto& velocity_moment) {
+    Mat<Dim> bare;
+    for (int a = 0; a < Dim; ++a)
+      for (int b = 0; b < Dim; ++b) bare(a, b) = velocity_moment[a * Dim + b];
+    return bare;
+  };
+  Mat<Dim> correction = to_correction(rates_[i].position_moment);
+  const Mat<Dim> bare_gradient = to_bare_gradient(rates_[i].velocity_moment);
+  Mat<Dim> gradient = bare_gradient * correction;
+  // What the bare divergence misses where neighbours are missing; that of the walls, mirrored, stays (docs/decisions/0008-walls.md).
+  if (parameters_.corrected_divergence)
+    rates_[i].density_rate -= static_cast<Real>(particles_.density[i] * (gradient.trace() - bare_gradient.trace()));
+  if (!sighted_.empty()) {
+    correction = to_correction(sighted_[i].position_moment);
+    gradient = to_bare_gradient(sighted_[i].velocity_moment) * correction;
+  }
   if ((!terms_.relaxed || dt > 0.0) && !is_driven(i)) {
     const Material& m = material(i);
     const FlowCurve curve =
@@ -356,9 +372,6 @@ Mat<Dim> Solver<Dim, Real>::integrate_stress(std::size_t i, double dt) {
     particles_.viscosity[i] = static_cast<float>(after.viscosity);
   }
   if (terms_.pair.hourglass) pack_hourglass(i, gradient);
-  // What the bare divergence misses where neighbours are missing; that of the walls, mirrored, stays (docs/decisions/0008-walls.md).
-  if (parameters_.corrected_divergence)
-    rates_[i].density_rate -= static_cast<Real>(particles_.density[i] * (gradient.trace() - bare_gradient.trace()));
   return to_matrix<Dim>(particles_.stress[i]) * correction;
 }
 

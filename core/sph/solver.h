@@ -155,6 +155,7 @@ class Solver {
   double least_skin() const { return parameters_.skin.value_or(0.08); }
   void search_neighbours(double skin);
   void pack_heat(std::size_t i, double largest_conductivity, Real* record) const;
+  void pack_sight();
   void pack_motion(const std::vector<Vec<Dim>>& velocity);
   void pack_gas(std::size_t i, double dt);
   void pack_gradients();
@@ -228,6 +229,7 @@ class Solver {
   std::vector<double> power_density_;  ///< of each heat source of given power at weight 1, at this step [W/m^(Dim - 1)]
   HeatLedger heat_ledger_;
   std::vector<RateSums<Dim, Real>> rates_;
+  std::vector<SightedSums<Dim, Real>> sighted_;  ///< empty where sight does not differ
   std::vector<HeatBalance<Dim>> heat_balance_;  ///< empty without heat
   std::vector<Vec<Dim>> acceleration_;
   std::vector<Real> energy_rate_;  ///< of an ideal gas [W/kg], or empty
