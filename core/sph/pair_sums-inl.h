@@ -25,12 +25,13 @@ template <int Dim>
 struct RateIndex {
   static constexpr int density_rate = 0, velocity_moment = 1, position_moment = velocity_moment + Dim * Dim,
                        heat = position_moment + n_symmetric<Dim>, moment_trace = heat + 1, heat_imbalance = moment_trace + 1,
-                       xsph = heat_imbalance + Dim, n_sums = xsph + Dim;
+                       xsph = heat_imbalance + Dim, sighted_velocity = xsph + Dim, sighted_position = sighted_velocity + Dim * Dim,
+                       n_sums = sighted_position + n_symmetric<Dim>;
 };
 
-template <typename PairKernel, int Dim, typename Real, bool with_stress, HeatTerms heat_terms, bool with_xsph>
+template <typename PairKernel, int Dim, typename Real, bool with_stress, bool with_sight, HeatTerms heat_terms, bool with_xsph>
 void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, double h, std::size_t begin,
-               std::size_t end, RateSums<Dim, Real>* sums) {
+               std::size_t end, RateSums<Dim, Real>* sums, [[maybe_unused]] SightedSums<Dim, Real>* sighted) {
   const Tag<Real> d;
   const PairKernel kernel(h);
   constexpr bool with_heat = heat_terms != HeatTerms::none;
@@ -44,6 +45,7 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   for (std::size_t i = begin; i < end; ++i) {
     const Real* record_i = records + i * stride;
     [[maybe_unused]] const auto inverse_density_i = hn::Set(d, 1 / record_i[Fields::density_at]);
+    [[maybe_unused]] const auto sight_i = hn::Set(d, static_cast<Real>(sight_of_thinner) / record_i[Fields::rest_viscosity_at]);
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
       const Neighbours<Dim, Real> pair(record_i, records, stride, index);
       const auto &x_ij = pair.x_ij, &v_ij = pair.v_ij;
@@ -53,17 +55,24 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
       sum[At::density_rate] = hn::MulAdd(hn::Mul(pair.density, volume_f), dot<Dim, Real>(v_ij, x_ij), sum[At::density_rate]);
       if constexpr (with_stress || with_heat) {
         // v_j - v_i = -v_ij and x_j - x_i = -x_ij: one sign for all.
-        for (int b = 0; b < Dim; ++b) {
-          const auto weighted = hn::Mul(volume_f, x_ij[b]);
-          if constexpr (with_stress)
-            for (int a = 0; a < Dim; ++a) {
-              auto& moment = sum[At::velocity_moment + a * Dim + b];
-              moment = hn::NegMulAdd(v_ij[a], weighted, moment);
+        const auto add_moments = [&](Simd<Real> weight, int velocity_at, int position_at) HWY_ATTR __attribute__((always_inline)) {
+          for (int b = 0; b < Dim; ++b) {
+            const auto weighted = hn::Mul(weight, x_ij[b]);
+            if constexpr (with_stress)
+              for (int a = 0; a < Dim; ++a) {
+                auto& moment = sum[velocity_at + a * Dim + b];
+                moment = hn::NegMulAdd(v_ij[a], weighted, moment);
+              }
+            for (int a = 0; a <= b; ++a) {
+              auto& moment = sum[position_at + symmetric_index<Dim>(a, b)];
+              moment = hn::NegMulAdd(x_ij[a], weighted, moment);
             }
-          for (int a = 0; a <= b; ++a) {
-            auto& moment = sum[At::position_moment + symmetric_index<Dim>(a, b)];
-            moment = hn::NegMulAdd(x_ij[a], weighted, moment);
           }
+        };
+        add_moments(volume_f, At::velocity_moment, At::position_moment);
+        if constexpr (with_sight) {
+          const auto sight = hn::Min(one, hn::Mul(sight_i, load_field<Fields::rest_viscosity_at>(records, stride, index)));
+          add_moments(hn::Mul(volume_f, sight), At::sighted_velocity, At::sighted_position);
         }
       }
       if constexpr (with_heat) {
@@ -105,6 +114,10 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
     out.density_rate = total[At::density_rate];
     if constexpr (with_stress) std::copy_n(total + At::velocity_moment, Dim * Dim, out.velocity_moment.begin());
     if constexpr (with_stress || with_heat) std::copy_n(total + At::position_moment, n_symmetric<Dim>, out.position_moment.begin());
+    if constexpr (with_sight) {
+      std::copy_n(total + At::sighted_velocity, Dim * Dim, sighted[i - begin].velocity_moment.begin());
+      std::copy_n(total + At::sighted_position, n_symmetric<Dim>, sighted[i - begin].position_moment.begin());
+    }
     if constexpr (with_heat) {
       // Twice, and the half of a mean.
       out.heat = total[At::heat];
@@ -116,7 +129,7 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   }
 }
 
-template <typename PairKernel, int Dim, typename Real, bool with_stress, bool with_hourglass>
+template <typename PairKernel, int Dim, typename Real, bool with_stress, bool with_sight, bool with_hourglass>
 void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const ForceParameters& parameters,
                 std::size_t begin, std::size_t end, std::array<Real, Dim>* acceleration) {
   const Tag<Real> d;
@@ -136,6 +149,9 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
     const Real* record_i = records + i * stride;
     const auto density_i = hn::Set(d, record_i[Fields::density_at]);
     const auto inverse_density_i = hn::Set(d, 1 / record_i[Fields::density_at]);
+    constexpr int eta_at = Fields::rest_viscosity_of_forces_at;
+    [[maybe_unused]] const auto sight_of_i = hn::Set(d, static_cast<Real>(sight_of_thinner) * record_i[eta_at]);
+    [[maybe_unused]] const auto sight_i = hn::Set(d, static_cast<Real>(sight_of_thinner) * record_i[eta_at + 1]);
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
       const Neighbours<Dim, Real> pair(record_i, records, stride, index);
       const auto &x_ij = pair.x_ij, &v_ij = pair.v_ij;
@@ -156,23 +172,36 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
         constexpr int n_stress = Fields::n_stress(with_hourglass);
         Simd<Real> stress_j[padded_fields(n_stress)];
         load_fields<Fields::stress_at, n_stress>(records, stride, index, stress_j);
-        // m_j/(rho_i rho_j) = V_j/rho_i.
+        // m_j/(rho_i rho_j) = V_j/rho_i; times the sight of i, and of j.
         const auto scale = hn::Mul(volume_f, inverse_density_i);
+        auto scale_i = scale, scale_j = scale;
+        if constexpr (with_sight) {
+          Simd<Real> eta_j[padded_fields(2)];
+          load_fields<eta_at, 2>(records, stride, index, eta_j);
+          scale_i = hn::Mul(scale, hn::Min(one, hn::Mul(sight_i, eta_j[0])));
+          scale_j = hn::Mul(scale, hn::Min(one, hn::Mul(sight_of_i, eta_j[1])));
+        }
         for (int a = 0; a < Dim; ++a) {
           auto traction = hn::Mul(stress_j[a * Dim], x_ij[0]);
           for (int b = 1; b < Dim; ++b) traction = hn::MulAdd(stress_j[a * Dim + b], x_ij[b], traction);
-          sum[a] = hn::MulAdd(scale, traction, sum[a]);
+          sum[a] = hn::MulAdd(scale_j, traction, sum[a]);
           // The particle's own stress is the same in all of its pairs.
-          sum[way_at + a] = hn::MulAdd(scale, x_ij[a], sum[way_at + a]);
+          sum[way_at + a] = hn::MulAdd(scale_i, x_ij[a], sum[way_at + a]);
         }
         if constexpr (with_hourglass) {
-          const auto pair_sum = [&](int field) HWY_ATTR { return hn::Add(hn::Set(d, record_i[field]), stress_j[field - Fields::stress_at]); };
+          const auto of_i = [&](int field) HWY_ATTR { return hn::Set(d, record_i[field]); };
+          const auto of_j = [&](int field) HWY_ATTR { return stress_j[field - Fields::stress_at]; };
+          const auto pair_sum = [&](int field) HWY_ATTR {
+            if constexpr (with_sight) return hn::MulAdd(scale_i, of_i(field), hn::Mul(scale_j, of_j(field)));
+            return hn::Add(of_i(field), of_j(field));
+          };
           auto unseen = hn::Mul(pair_sum(Fields::hourglass_at), v_x);
           for (int m = 0; m < n_symmetric<Dim>; ++m) {
             const auto [a, b] = symmetric_entry<Dim>(m);
             unseen = hn::NegMulAdd(pair_sum(Fields::hourglass_at + 1 + m), hn::Mul(x_ij[a], x_ij[b]), unseen);
           }
-          const auto weight = hn::Mul(hn::Mul(hn::Mul(scale, hourglass), unseen), hn::Mul(inverse, density_sum));
+          const auto strength = with_sight ? hourglass : hn::Mul(scale, hourglass);
+          const auto weight = hn::Mul(hn::Mul(strength, unseen), hn::Mul(inverse, density_sum));
           for (int a = 0; a < Dim; ++a) sum[a] = hn::MulAdd(weight, x_ij[a], sum[a]);
         }
       }
@@ -257,41 +286,48 @@ void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lis
 /// Picks the loop compiled for just the terms in use.
 template <typename PairKernel, int Dim, typename Real>
 void select_rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms, double h,
-                      std::size_t begin, std::size_t end, RateSums<Dim, Real>* sums) {
-  const auto run = [&](auto stress, auto heat, auto xsph) HWY_ATTR {
-    rate_sums<PairKernel, Dim, Real, stress.value, heat.value, xsph.value>(fields, lists, h, begin, end, sums);
+                      std::size_t begin, std::size_t end, RateSums<Dim, Real>* sums, SightedSums<Dim, Real>* sighted) {
+  const auto run = [&](auto stress, auto sight, auto heat, auto xsph) HWY_ATTR {
+    rate_sums<PairKernel, Dim, Real, stress.value, sight.value, heat.value, xsph.value>(fields, lists, h, begin, end, sums, sighted);
   };
-  const auto with_xsph = [&](auto stress, auto heat) HWY_ATTR {
-    terms.xsph ? run(stress, heat, std::true_type{}) : run(stress, heat, std::false_type{});
+  const auto with_xsph = [&](auto stress, auto sight, auto heat) HWY_ATTR {
+    terms.xsph ? run(stress, sight, heat, std::true_type{}) : run(stress, sight, heat, std::false_type{});
   };
-  const auto with_heat = [&](auto stress) HWY_ATTR {
+  const auto with_heat = [&](auto stress, auto sight) HWY_ATTR {
     switch (terms.heat) {
-      case HeatTerms::none: return with_xsph(stress, std::integral_constant<HeatTerms, HeatTerms::none>{});
-      case HeatTerms::uniform: return with_xsph(stress, std::integral_constant<HeatTerms, HeatTerms::uniform>{});
-      case HeatTerms::mixed: return with_xsph(stress, std::integral_constant<HeatTerms, HeatTerms::mixed>{});
+      case HeatTerms::none: return with_xsph(stress, sight, std::integral_constant<HeatTerms, HeatTerms::none>{});
+      case HeatTerms::uniform: return with_xsph(stress, sight, std::integral_constant<HeatTerms, HeatTerms::uniform>{});
+      case HeatTerms::mixed: return with_xsph(stress, sight, std::integral_constant<HeatTerms, HeatTerms::mixed>{});
     }
   };
-  terms.stress ? with_heat(std::true_type{}) : with_heat(std::false_type{});
+  if (terms.stress && terms.sight) return with_heat(std::true_type{}, std::true_type{});
+  terms.stress ? with_heat(std::true_type{}, std::false_type{}) : with_heat(std::false_type{}, std::false_type{});
 }
 
 template <typename PairKernel, int Dim, typename Real>
 void select_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,
                        const ForceParameters& parameters, std::size_t begin, std::size_t end,
                        std::array<Real, Dim>* acceleration) {
+  const auto run = [&](auto stress, auto sight, auto hourglass) HWY_ATTR {
+    force_sums<PairKernel, Dim, Real, stress.value, sight.value, hourglass.value>(fields, lists, parameters, begin, end, acceleration);
+  };
+  const auto with_sight = [&](auto hourglass) HWY_ATTR {
+    terms.sight ? run(std::true_type{}, std::true_type{}, hourglass) : run(std::true_type{}, std::false_type{}, hourglass);
+  };
   if (terms.hourglass)
-    force_sums<PairKernel, Dim, Real, true, true>(fields, lists, parameters, begin, end, acceleration);
+    with_sight(std::true_type{});
   else if (terms.stress)
-    force_sums<PairKernel, Dim, Real, true, false>(fields, lists, parameters, begin, end, acceleration);
+    with_sight(std::false_type{});
   else
-    force_sums<PairKernel, Dim, Real, false, false>(fields, lists, parameters, begin, end, acceleration);
+    run(std::false_type{}, std::false_type{}, std::false_type{});
 }
 
 #define SMELT_INSTANTIATE(Dim, Real, suffix)                                                                           \
   inline void rate_sums_##suffix(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,                     \
                                  const PairTerms& terms, double h, std::size_t begin, std::size_t end,                 \
-                                 RateSums<Dim, Real>* sums) {                                                          \
+                                 RateSums<Dim, Real>* sums, SightedSums<Dim, Real>* sighted) {                         \
     with_kernel<Dim, Real>(terms.kernel, [&](auto kernel) HWY_ATTR {                                                   \
-      select_rate_sums<typename decltype(kernel)::type, Dim, Real>(fields, lists, terms, h, begin, end, sums);         \
+      select_rate_sums<typename decltype(kernel)::type, Dim, Real>(fields, lists, terms, h, begin, end, sums, sighted); \
     });                                                                                                                \
   }                                                                                                                    \
   inline void force_sums_##suffix(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,                    \

@@ -24,8 +24,9 @@ SMELT_EXPORT(1d)
 #define SMELT_DISPATCH(Dim, Real, suffix)                                                                              \
   template <>                                                                                                          \
   void compute_rate_sums<Dim, Real>(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,     \
-                         double smoothing_length, std::size_t begin, std::size_t end, RateSums<Dim, Real>* sums) {     \
-    HWY_DYNAMIC_DISPATCH(rate_sums_##suffix)(fields, lists, terms, smoothing_length, begin, end, sums);                \
+                         double smoothing_length, std::size_t begin, std::size_t end, RateSums<Dim, Real>* sums,       \
+                         SightedSums<Dim, Real>* sighted) {                                                            \
+    HWY_DYNAMIC_DISPATCH(rate_sums_##suffix)(fields, lists, terms, smoothing_length, begin, end, sums, sighted);       \
   }                                                                                                                    \
   template <>                                                                                                          \
   void compute_force_sums<Dim, Real>(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,    \

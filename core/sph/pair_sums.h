@@ -28,11 +28,16 @@ struct PairTerms {
   KernelType kernel = KernelType::cubic_spline;
   bool stress = false;
   bool hourglass = false;  ///< hourglass control, of a stress
+  bool sight = false;      ///< some particles are far thinner than others (sight_of_thinner): a stress does not see them from the stiff ones
   HeatTerms heat = HeatTerms::none;
   bool xsph = false;
 
   bool has_heat() const { return heat != HeatTerms::none; }
 };
+
+/// A stress is made from a velocity gradient over neighbours, each weighted by its sight w_ij = min(1, sight_of_thinner eta_j/eta_i), eta the
+/// viscosity at rest: a solid does not take the flow of a liquid over it for its own shear (docs/decisions/0033-solid-under-a-flow.md).
+inline constexpr double sight_of_thinner = 10.0;
 
 /// Fields padded to whole groups of four: a vector of neighbours is loaded group by group and transposed, which costs a fraction of
 /// gathering field by field (docs/decisions/0006-pair-loops.md).
@@ -51,6 +56,8 @@ struct PairFields {
   static constexpr int conductivity_at = heat_at + 1, inverse_trace_at = heat_at + 2, balance_at = heat_at + 3;
   /// p/rho^2 [Pa m^(2 Dim)/kg^2], and p [Pa] of a liquid or the sound speed [m/s] of an ideal gas.
   static constexpr int specific_pressure_at = 14, pressure_at = 15, sound_speed_at = 15;
+  /// Where sight differs, viscosity at rest eta [Pa s]: in the first pass, and in the second, which reads no heat, followed by 1/eta.
+  static constexpr int rest_viscosity_at = 14, rest_viscosity_of_forces_at = 8;
   /// S L row-major [Pa]. With hourglass control, then eta_h/2 [Pa s] and eta_h E/2 [Pa], E the symmetric velocity gradient, packed, its
   /// off-diagonal entries doubled.
   static constexpr int stress_at = 16, hourglass_at = stress_at + Dim * Dim;
@@ -85,11 +92,19 @@ struct RateSums {
 template <typename Real>
 inline constexpr int pair_lanes = 64 / static_cast<int>(sizeof(Real));
 
+/// What a stress sees where sight differs.
+template <int Dim, typename Real>
+struct SightedSums {
+  std::array<Real, Dim * Dim> velocity_moment;            ///< sum V_j w_ij (v_j - v_i) (x) grad_w_ij, row-major
+  std::array<Real, Dim*(Dim + 1) / 2> position_moment;  ///< sum V_j w_ij (x_j - x_i) (x) grad_w_ij
+};
+
 /// First pass for particles [begin, end): rates of density, velocity gradient, heat and XSPH from `fields.velocity`.
-/// `smoothing_length` in metres. `sums` has one entry for each of them.
+/// `smoothing_length` in metres. `sums` has one entry for each of them, and so has `sighted` where the terms have sight.
 template <int Dim, typename Real>
 void compute_rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,
-                       double smoothing_length, std::size_t begin, std::size_t end, RateSums<Dim, Real>* sums);
+                       double smoothing_length, std::size_t begin, std::size_t end, RateSums<Dim, Real>* sums,
+                       SightedSums<Dim, Real>* sighted = nullptr);
 
 /// Sums over all particles in reach and the particle itself.
 template <typename Real>
@@ -112,11 +127,12 @@ struct ForceParameters {
 };
 
 /// Second pass for particles [begin, end): the accelerations [m/s^2], one entry for each of them,
-///   - sum m_j (p_i/rho_i^2 + p_j/rho_j^2 + Pi_ij) grad_w_ij + sum m_j/(rho_i rho_j) (S_i L_i + S_j L_j) grad_w_ij
+///   - sum m_j (p_i/rho_i^2 + p_j/rho_j^2 + Pi_ij) grad_w_ij + sum m_j/(rho_i rho_j) (w_ij S_i L_i + w_ji S_j L_j) grad_w_ij
 /// of [P 4-38, 4-46, 6-14 corrected: Pi_ij already divides by a density], with Pi_ij of [P 6-15]. L is the inverse of the position
 /// moment: with it the force is the adjoint of the corrected gradient, so it does no work on a rigid motion and conserves
 /// linear and angular momentum [Bonet & Lok 1999]. Hourglass control adds
-///   2 (Dim + 2) sum V_j/rho_i [ (eta_i + eta_j)/2 v_ij.x_ij - x_ij.(eta_i E_i + eta_j E_j)/2 x_ij ] / (r^2 + 0.01 h^2) grad_w_ij,
+///   2 (Dim + 2) sum V_j/rho_i [ (eta_i + eta_j)/2 v_ij.x_ij - x_ij.(eta_i E_i + eta_j E_j)/2 x_ij ] / (r^2 + 0.01 h^2) grad_w_ij
+/// (eta_i and eta_j times w_ij and w_ji, too),
 /// the pairwise viscosity of [Monaghan & Gingold 1983] on what the gradients do not see of the velocities: nothing where the field
 /// is linear, a fourth derivative where it is smooth, and friction for motions of the lattice that no gradient resists
 /// (docs/decisions/0009-hourglass-control.md, after [Ganzenmueller 2015]).

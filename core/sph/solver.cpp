@@ -38,6 +38,14 @@ Mat<Dim> unpack(const std::array<Real, n_symmetric<Dim>>& packed) {
   return to_matrix<Dim>(values);
 }
 
+template <int Dim, typename Real>
+Mat<Dim> unpack_gradient(const std::array<Real, Dim * Dim>& row_major) {
+  Mat<Dim> gradient;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = 0; b < Dim; ++b) gradient(a, b) = row_major[static_cast<std::size_t>(a * Dim + b)];
+  return gradient;
+}
+
 /// Radius of the sphere (disc, segment) of a particle's volume  [P 5-11].
 template <int Dim>
 double particle_radius(double volume) {
@@ -279,12 +287,14 @@ void Solver<Dim, Real>::advance_rates(double dt, double time) {
 template <int Dim, typename Real>
 HeatLedger Solver<Dim, Real>::advance_block(std::size_t begin, std::size_t end, double dt, double time) {
   std::array<RateSums<Dim, Real>, block_size> rates;
-  compute_rate_sums<Dim, Real>(fields_, lists_, terms_.pair, parameters_.smoothing_length, begin, end, rates.data());
+  std::array<SightedSums<Dim, Real>, block_size> sighted;  // where sight differs
+  compute_rate_sums<Dim, Real>(fields_, lists_, terms_.pair, parameters_.smoothing_length, begin, end, rates.data(),
+                               sighted.data());
   if (terms_.diffusion) add_density_diffusion(begin, end, rates.data());
   HeatLedger passed;
   for (std::size_t i = begin; i < end; ++i) {
     RateSums<Dim, Real>& rate = rates[i - begin];
-    if (const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr) add_wall_rates(*wall, rate);
+    if (const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr) add_wall_rates(*wall, rate, sighted[i - begin]);
     Mat<Dim> correction = Mat<Dim>::Zero();
     if (terms_.pair.stress || terms_.pair.has_heat())
       correction = compute_gradient_correction<Dim>(unpack<Dim, Real>(rate.position_moment));
@@ -292,7 +302,7 @@ HeatLedger Solver<Dim, Real>::advance_block(std::size_t begin, std::size_t end, 
       if (dt > 0.0) passed += advance_heat(i, rate.heat, dt, time);
       heat_balance_[i] = balance_heat<Dim, Real>(rate, correction);
     }
-    if (terms_.pair.stress) advance_stress(i, dt, correction, rate);
+    if (terms_.pair.stress) advance_stress(i, dt, correction, rate, sighted[i - begin]);
     if (parameters_.density == DensityForm::continuity && !is_driven(i))
       particles_.density[i] += dt * rate.density_rate;
     if (terms_.pair.xsph)
@@ -355,7 +365,8 @@ void Solver<Dim, Real>::add_density_diffusion(std::size_t begin, std::size_t end
 }
 
 template <int Dim, typename Real>
-void Solver<Dim, Real>::add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<Dim, Real>& rate) const {
+void Solver<Dim, Real>::add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<Dim, Real>& rate,
+                                       SightedSums<Dim, Real>& sighted) const {
   using Fields = PairFields<Dim, Real>;
   const auto i = static_cast<std::size_t>(wall.particle);
   Vec<Dim> velocity;  // the one that the pair sums were made with
@@ -363,17 +374,22 @@ void Solver<Dim, Real>::add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<
   accumulate_wall_rates<Dim, Real>(wall, colliders_, terms_.pair, velocity, particles_.density[i], material(i).density,
                                    terms_.pair.has_heat() ? particles_.temperature[i] : 0.0,
                                    terms_.pair.has_heat() ? static_cast<double>(heat_balance_[i].moment_trace) : 1.0,
-                                   rate);
+                                   rate, terms_.pair.sight ? &sighted : nullptr);
 }
 
 /// Advances the extra stress S and packs S L for the force pass; `correction` is L.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::advance_stress(std::size_t i, double dt, const Mat<Dim>& correction,
-                                       RateSums<Dim, Real>& rate) {
-  Mat<Dim> bare_gradient;
-  for (int a = 0; a < Dim; ++a)
-    for (int b = 0; b < Dim; ++b) bare_gradient(a, b) = rate.velocity_moment[a * Dim + b];
-  const Mat<Dim> gradient = bare_gradient * correction;
+void Solver<Dim, Real>::advance_stress(std::size_t i, double dt, Mat<Dim> correction, RateSums<Dim, Real>& rate,
+                                       const SightedSums<Dim, Real>& sighted) {
+  const Mat<Dim> bare_gradient = unpack_gradient<Dim, Real>(rate.velocity_moment);
+  Mat<Dim> gradient = bare_gradient * correction;
+  // What the bare divergence misses where neighbours are missing; that of the walls, mirrored, stays (docs/decisions/0008-walls.md).
+  if (parameters_.corrected_divergence)
+    rate.density_rate -= static_cast<Real>(particles_.density[i] * (gradient.trace() - bare_gradient.trace()));
+  if (terms_.pair.sight) {
+    correction = compute_gradient_correction<Dim>(unpack<Dim, Real>(sighted.position_moment));
+    gradient = unpack_gradient<Dim, Real>(sighted.velocity_moment) * correction;
+  }
   if ((!terms_.relaxed || dt > 0.0) && !is_driven(i)) {
     const Material& m = material(i);
     const FlowCurve curve =
@@ -386,9 +402,6 @@ void Solver<Dim, Real>::advance_stress(std::size_t i, double dt, const Mat<Dim>&
     particles_.viscosity[i] = static_cast<float>(after.viscosity);
   }
   if (terms_.pair.hourglass) pack_hourglass(i, gradient);
-  // What the bare divergence misses where neighbours are missing; that of the walls, mirrored, stays (docs/decisions/0008-walls.md).
-  if (parameters_.corrected_divergence)
-    rate.density_rate -= static_cast<Real>(particles_.density[i] * (gradient.trace() - bare_gradient.trace()));
   pack_stress(i, to_matrix<Dim>(particles_.stress[i]) * correction);
 }
 

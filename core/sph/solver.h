@@ -159,6 +159,7 @@ class Solver {
   double least_skin() const { return parameters_.skin.value_or(0.08); }
   void search_neighbours(double skin);
   void pack_heat(std::size_t i, double largest_conductivity, Real* record) const;
+  void pack_sight();
   void pack_motion(bool with_transport);
   void pack_gas(std::size_t i, double dt);
   void copy_records_to_images();
@@ -168,8 +169,9 @@ class Solver {
   HeatLedger advance_block(std::size_t begin, std::size_t end, double dt, double time);
   void evaluate_pressure_gradients();
   void add_density_diffusion(std::size_t begin, std::size_t end, RateSums<Dim, Real>* rates) const;
-  void add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<Dim, Real>& rate) const;
-  void advance_stress(std::size_t i, double dt, const Mat<Dim>& correction, RateSums<Dim, Real>& rate);
+  void add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<Dim, Real>& rate, SightedSums<Dim, Real>& sighted) const;
+  void advance_stress(std::size_t i, double dt, Mat<Dim> correction, RateSums<Dim, Real>& rate,
+                      const SightedSums<Dim, Real>& sighted);
   void apply_wall_forces(std::size_t slot);
   void sum_body_loads();
   double pressure(std::size_t i) const;

@@ -1,8 +1,11 @@
 // The records that the pair loops read, made from the particles' state.
 #include "core/parallel.h"
+#include "core/sph/rheology.h"
 #include "core/sph/solver.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace smelt {
 
@@ -17,6 +20,28 @@ void Solver<Dim, Real>::pack_heat(std::size_t i, double largest_conductivity, Re
       static_cast<Real>(largest_conductivity > 0.0 && m.heat ? conductivity(m) / largest_conductivity : 0.0);
   record[Fields::inverse_trace_at] = 1 / heat_balance_[i].moment_trace;
   for (int a = 0; a < Dim; ++a) record[Fields::balance_at + a] = heat_balance_[i].lambda[a];
+}
+
+/// Viscosities at rest, and whether they differ by more than a stress sees across. A power law without yield stress has none: that at 1/s.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::pack_sight() {
+  using Fields = PairFields<Dim, Real>;
+  struct Range {
+    double least, most;
+  };
+  const Range of_all = deterministic_reduce(
+      particles_.size(), Range{std::numeric_limits<double>::infinity(), 0.0},
+      [&](std::size_t i) {
+        const Material& m = material(i);
+        const FlowCurve curve =
+            m.heat ? flow_curve_at(m.rheology, melted_fraction_of(i), particles_.temperature[i]) : flow_curve_at(m.rheology, 0.0);
+        constexpr double inviscid = 1e-30;
+        const double eta = std::max(inviscid, std::isfinite(curve.rest_viscosity) ? curve.rest_viscosity : curve.consistency);
+        fields_.record(i)[Fields::rest_viscosity_at] = static_cast<Real>(eta);
+        return Range{eta, eta};
+      },
+      [](const Range& a, const Range& b) { return Range{std::min(a.least, b.least), std::max(a.most, b.most)}; });
+  terms_.pair.sight = of_all.most > sight_of_thinner * of_all.least;
 }
 
 template <int Dim, typename Real>
@@ -39,6 +64,8 @@ void Solver<Dim, Real>::pack_motion(bool with_transport) {
     if (terms_.pair.has_heat()) pack_heat(i, largest_conductivity, record);
     if (with_pressure) record[Fields::pressure_at] = static_cast<Real>(pressure(i));
   });
+  // Of one material, without heat, all particles are alike.
+  if (terms_.pair.stress && (terms_.pair.has_heat() || materials_.size() > 1)) pack_sight();
   copy_records_to_images();
 }
 
@@ -70,6 +97,11 @@ void Solver<Dim, Real>::pack_forces(std::size_t i) {
   for (int a = 0; a < Dim; ++a) record[Fields::velocity_at + a] = static_cast<Real>(particles_.velocity[i][a]);
   record[Fields::volume_at] = static_cast<Real>(mass(i) / rho);
   record[Fields::density_at] = static_cast<Real>(rho);
+  if (terms_.pair.sight) {
+    const Real eta = record[Fields::rest_viscosity_at];  // until the pressure takes its place
+    record[Fields::rest_viscosity_of_forces_at] = eta;
+    record[Fields::rest_viscosity_of_forces_at + 1] = 1 / eta;
+  }
   record[Fields::specific_pressure_at] = static_cast<Real>(pressure(i) / (rho * rho));
 }
 

@@ -39,11 +39,11 @@ double wall_heat(const WallNeighbour<Dim>& wall, const Colliders<Dim>& colliders
 ///   heat             + wall_heat / theta,
 ///   moment_trace     + tr int y (x) grad_w dV / Dim, and
 ///   heat_imbalance   - sum A n, of walls with a temperature alone: at others support is missing,
-/// with theta [-] the particle's moment trace of the pass before.
+/// with theta [-] the particle's moment trace of the pass before. Both moments are added to `sighted`, if given, as well: every stress sees a wall.
 template <int Dim, typename Real>
 void accumulate_wall_rates(const WallNeighbour<Dim>& wall, const Colliders<Dim>& colliders, const PairTerms& terms,
                            const Vec<Dim>& v, double rho, double rest_density, double temperature, double theta,
-                           RateSums<Dim, Real>& sums) {
+                           RateSums<Dim, Real>& sums, SightedSums<Dim, Real>* sighted = nullptr) {
   double density_rate = 0.0, solid = 0.0, conducting = 0.0;
   Mat<Dim> velocity_moment = Mat<Dim>::Zero();
   for (const WallContact<Dim>& contact : wall.contacts) {
@@ -67,10 +67,15 @@ void accumulate_wall_rates(const WallNeighbour<Dim>& wall, const Colliders<Dim>&
   if (conducting > 0.0) sums.moment_trace += static_cast<Real>(conducting / solid * wall.moment.trace() / Dim);
   if (terms.stress)
     for (int a = 0; a < Dim; ++a)
-      for (int b = 0; b < Dim; ++b) sums.velocity_moment[a * Dim + b] += static_cast<Real>(velocity_moment(a, b));
+      for (int b = 0; b < Dim; ++b) {
+        sums.velocity_moment[a * Dim + b] += static_cast<Real>(velocity_moment(a, b));
+        if (sighted) sighted->velocity_moment[a * Dim + b] += static_cast<Real>(velocity_moment(a, b));
+      }
   if (!terms.stress && !terms.has_heat()) return;
   const Symmetric<Dim> moment = to_symmetric<Dim>(wall.moment);
   for (int k = 0; k < n_symmetric<Dim>; ++k) sums.position_moment[k] += static_cast<Real>(moment[k]);
+  if (!sighted) return;
+  for (int k = 0; k < n_symmetric<Dim>; ++k) sighted->position_moment[k] += static_cast<Real>(moment[k]);
 }
 
 /// int (p_w - p) grad_w dV over the solid behind one plane [Pa/m], where the pressure goes on with the gradient `along`

@@ -104,6 +104,41 @@ TEST(PairSums, KernelsAgreeWithTheScalarOnes) {
   expect_kernels_agree<3, float>(3e-6);
 }
 
+// A particle a hundred times as stiff as its neighbour sees a tenth of it, is seen by it in full, and momentum is kept.
+TEST(PairSums, AStressSeesLittleOfWhatIsFarThinner) {
+  using Fields = PairFields<3, double>;
+  Pair<3, double> pair(KernelType::cubic_spline, 0.6);
+  PairTerms terms;
+  terms.stress = true;
+  RateSums<3, double> sums[2];
+  SightedSums<3, double> seen[2];
+  terms.sight = true;
+  pair.fields.record(0)[Fields::rest_viscosity_at] = 300.0;
+  pair.fields.record(1)[Fields::rest_viscosity_at] = 3.0;
+  compute_rate_sums<3, double>(pair.fields, pair.lists, terms, h, 0, 2, sums, seen);
+  for (const int k : {0, 1}) {
+    const double sight = k == 0 ? 0.1 : 1.0;
+    EXPECT_NE(sums[k].velocity_moment[1], 0.0);
+    EXPECT_NEAR(seen[k].velocity_moment[1] / sums[k].velocity_moment[1], sight, 1e-12);
+    EXPECT_NEAR(seen[k].position_moment[1] / sums[k].position_moment[1], sight, 1e-12);
+  }
+  for (const int k : {0, 1}) {
+    double* record = pair.fields.record(static_cast<std::size_t>(k));
+    record[Fields::specific_pressure_at] = 0.0;
+    record[Fields::rest_viscosity_of_forces_at] = k == 0 ? 300.0 : 3.0;
+    record[Fields::rest_viscosity_of_forces_at + 1] = 1.0 / record[Fields::rest_viscosity_of_forces_at];
+  }
+  std::array<double, 3> acceleration[2];
+  compute_force_sums<3, double>(pair.fields, pair.lists, terms, {h, 0.0, 1.0}, 0, 2, acceleration);
+  const double x = pair.fields.record(0)[0];
+  for (int a = 0; a < 3; ++a) {
+    double traction = 0.0;  // S is 1 + its entry, and one more of particle 1
+    for (int b = 0; b < 3; ++b) traction += (0.1 * (1 + 3 * a + b) + (2 + 3 * a + b)) * x;
+    EXPECT_NEAR(acceleration[0][a], 0.5 / 2.0 * pair.f * traction, 1e-12 * std::abs(pair.f));
+    EXPECT_NEAR(2.0 * acceleration[0][a] + 3.0 * acceleration[1][a], 0.0, 1e-12 * std::abs(pair.f));
+  }
+}
+
 /// A jittered block with neighbours of any number, all fields random.
 struct Block {
   PairFields<3, float> fields;
@@ -130,30 +165,39 @@ struct Block {
     for (float& value : fields.records) value = static_cast<float>(1.5 + uniform(random));
     for (std::size_t i = 0; i < n; ++i)
       for (int a = 0; a < 3; ++a) fields.record(i)[a] = static_cast<float>(sorted[i][a]);
+    // Every other particle a thousand times as stiff as the others.
+    for (std::size_t i = 0; i < n; i += 2) {
+      fields.record(i)[Fields::rest_viscosity_at] *= 1e3F;
+      fields.record(i)[Fields::rest_viscosity_of_forces_at] *= 1e3F;
+    }
   }
 };
 
 TEST(PairSums, EveryInstructionSetGivesTheSameBytes) {
   PairTerms terms;
-  terms.stress = terms.hourglass = terms.xsph = true;
+  terms.stress = terms.hourglass = terms.sight = terms.xsph = true;
   terms.heat = HeatTerms::mixed;
   const Block block;
-  const auto evaluate = [&](std::vector<RateSums<3, float>>& rates, std::vector<std::array<float, 3>>& forces) {
+  const auto evaluate = [&](std::vector<RateSums<3, float>>& rates, std::vector<SightedSums<3, float>>& sighted,
+                            std::vector<std::array<float, 3>>& forces) {
     rates.resize(block.n);
     forces.resize(block.n);
-    compute_rate_sums<3, float>(block.fields, block.lists, terms, 2.0 * h, 0, block.n, rates.data());
+    sighted.resize(block.n);
+    compute_rate_sums<3, float>(block.fields, block.lists, terms, 2.0 * h, 0, block.n, rates.data(), sighted.data());
     compute_force_sums<3, float>(block.fields, block.lists, terms, {2.0 * h, 0.1, 10.0}, 0, block.n, forces.data());
   };
   std::vector<RateSums<3, float>> widest_rates, rates;
+  std::vector<SightedSums<3, float>> widest_sighted, sighted;
   std::vector<std::array<float, 3>> widest_forces, forces;
-  evaluate(widest_rates, widest_forces);
+  evaluate(widest_rates, widest_sighted, widest_forces);
   hwy::SetSupportedTargetsForTest(HWY_AVX2);
   hwy::GetChosenTarget().DeInit();
-  evaluate(rates, forces);
+  evaluate(rates, sighted, forces);
   hwy::SetSupportedTargetsForTest(0);
   hwy::GetChosenTarget().DeInit();
   for (std::size_t i = 0; i < block.n; ++i) {
     ASSERT_EQ(std::memcmp(&rates[i], &widest_rates[i], sizeof rates[i]), 0) << "of particle " << i;
+    ASSERT_EQ(std::memcmp(&sighted[i], &widest_sighted[i], sizeof sighted[i]), 0) << "of particle " << i;
     ASSERT_EQ(forces[i], widest_forces[i]) << "of particle " << i;
   }
 }
