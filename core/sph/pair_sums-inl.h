@@ -25,9 +25,47 @@ template <int Dim>
 struct RateIndex {
   static constexpr int density_rate = 0, velocity_moment = 1, position_moment = velocity_moment + Dim * Dim,
                        heat = position_moment + n_symmetric<Dim>, moment_trace = heat + 1, heat_imbalance = moment_trace + 1,
-                       xsph = heat_imbalance + Dim, sighted_velocity = xsph + Dim, sighted_position = sighted_velocity + Dim * Dim,
-                       n_sums = sighted_position + n_symmetric<Dim>;
+                       xsph = heat_imbalance + Dim, n_sums = xsph + Dim;
 };
+
+/// Adds sum V_j w (v_j - v_i) (x) grad_w_ij and sum V_j w (x_j - x_i) (x) grad_w_ij for a vector of neighbours, `weight` being V_j w F.
+template <int Dim, typename Real, bool with_velocity>
+HWY_INLINE void add_moments(const Neighbours<Dim, Real>& pair, Simd<Real> weight, Simd<Real>* velocity_moment, Simd<Real>* position_moment) {
+  // v_j - v_i = -v_ij and x_j - x_i = -x_ij: one sign for all.
+  for (int b = 0; b < Dim; ++b) {
+    const auto weighted = hn::Mul(weight, pair.x_ij[b]);
+    if constexpr (with_velocity)
+      for (int a = 0; a < Dim; ++a) velocity_moment[a * Dim + b] = hn::NegMulAdd(pair.v_ij[a], weighted, velocity_moment[a * Dim + b]);
+    for (int a = 0; a <= b; ++a) {
+      auto& moment = position_moment[symmetric_index<Dim>(a, b)];
+      moment = hn::NegMulAdd(pair.x_ij[a], weighted, moment);
+    }
+  }
+}
+
+/// What the stress of particle `i` sees where some neighbour is too thin for it to see in full.
+template <typename PairKernel, int Dim, typename Real>
+SightedSums<Dim, Real> sighted_sums(const PairFields<Dim, Real>& fields, const PairKernel& kernel, std::span<const std::int32_t> row, std::size_t i) {
+  const Tag<Real> d;
+  using Fields = PairFields<Dim, Real>;
+  const Real* records = fields.records.data();
+  constexpr int stride = Fields::stride_of(true), position_at = Dim * Dim;
+  const Real* record_i = records + i * stride;
+  const auto sight_i = hn::Set(d, static_cast<Real>(sight_of_thinner) / record_i[Fields::rest_viscosity_at]);
+  const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+    const Neighbours<Dim, Real> pair(record_i, records, stride, index);
+    const auto eta_j = load_field<Fields::rest_viscosity_at>(records, stride, index);
+    const auto sight = hn::Min(hn::Set(d, Real(1)), hn::Mul(sight_i, eta_j));
+    const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(dot<Dim, Real>(pair.x_ij, pair.x_ij)));
+    add_moments<Dim, Real, true>(pair, hn::Mul(volume_f, sight), sum, sum + position_at);
+  };
+  Real total[position_at + n_symmetric<Dim>];
+  sum_row(row, total, add_pairs);
+  SightedSums<Dim, Real> sums;
+  std::copy_n(total, Dim * Dim, sums.velocity_moment.begin());
+  std::copy_n(total + position_at, n_symmetric<Dim>, sums.position_moment.begin());
+  return sums;
+}
 
 template <typename PairKernel, int Dim, typename Real, bool with_stress, bool with_sight, HeatTerms heat_terms, bool with_xsph>
 void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, double h, std::size_t begin,
@@ -45,7 +83,7 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   for (std::size_t i = begin; i < end; ++i) {
     const Real* record_i = records + i * stride;
     [[maybe_unused]] const auto inverse_density_i = hn::Set(d, 1 / record_i[Fields::density_at]);
-    [[maybe_unused]] const auto sight_i = hn::Set(d, static_cast<Real>(sight_of_thinner) / record_i[Fields::rest_viscosity_at]);
+    [[maybe_unused]] auto thinnest = hn::Set(d, record_i[Fields::rest_viscosity_at]);
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
       const Neighbours<Dim, Real> pair(record_i, records, stride, index);
       const auto &x_ij = pair.x_ij, &v_ij = pair.v_ij;
@@ -54,32 +92,17 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
       const auto volume_f = hn::Mul(pair.volume, f);
       sum[At::density_rate] = hn::MulAdd(hn::Mul(pair.density, volume_f), dot<Dim, Real>(v_ij, x_ij), sum[At::density_rate]);
       if constexpr (with_stress || with_heat) {
-        // v_j - v_i = -v_ij and x_j - x_i = -x_ij: one sign for all.
-        const auto add_moments = [&](Simd<Real> weight, int velocity_at, int position_at) HWY_ATTR __attribute__((always_inline)) {
-          for (int b = 0; b < Dim; ++b) {
-            const auto weighted = hn::Mul(weight, x_ij[b]);
-            if constexpr (with_stress)
-              for (int a = 0; a < Dim; ++a) {
-                auto& moment = sum[velocity_at + a * Dim + b];
-                moment = hn::NegMulAdd(v_ij[a], weighted, moment);
-              }
-            for (int a = 0; a <= b; ++a) {
-              auto& moment = sum[position_at + symmetric_index<Dim>(a, b)];
-              moment = hn::NegMulAdd(x_ij[a], weighted, moment);
-            }
-          }
-        };
-        add_moments(volume_f, At::velocity_moment, At::position_moment);
-        if constexpr (with_sight) {
-          const auto sight = hn::Min(one, hn::Mul(sight_i, load_field<Fields::rest_viscosity_at>(records, stride, index)));
-          add_moments(hn::Mul(volume_f, sight), At::sighted_velocity, At::sighted_position);
-        }
+        add_moments<Dim, Real, with_stress>(pair, volume_f, sum + At::velocity_moment, sum + At::position_moment);
       }
+      if constexpr (with_sight && !with_heat)
+        thinnest = hn::Min(thinnest, load_field<Fields::rest_viscosity_at>(records, stride, index));
       if constexpr (with_heat) {
-        Simd<Real> heat_j[padded_fields(Fields::n_heat)];
-        load_fields<Fields::heat_at, Fields::n_heat>(records, stride, index, heat_j);
+        constexpr int n_heat = with_sight ? Fields::rest_viscosity_at + 1 - Fields::heat_at : Fields::n_heat;
+        Simd<Real> heat_j[padded_fields(n_heat)];
+        load_fields<Fields::heat_at, n_heat>(records, stride, index, heat_j);
         const auto of_i = [&](int field) HWY_ATTR { return hn::Set(d, record_i[field]); };
         const auto of_j = [&](int field) HWY_ATTR { return heat_j[field - Fields::heat_at]; };
+        if constexpr (with_sight) thinnest = hn::Min(thinnest, of_j(Fields::rest_viscosity_at));
         auto along_i = hn::Mul(x_ij[0], of_i(Fields::balance_at));
         auto along_j = hn::Mul(x_ij[0], of_j(Fields::balance_at));
         for (int a = 1; a < Dim; ++a) {
@@ -108,15 +131,19 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
       }
     };
     Real total[At::n_sums];
-    sum_row(lists.read(i, buffer.data()).padded, total, add_pairs);
+    const auto row = lists.read(i, buffer.data()).padded;
+    sum_row(row, total, add_pairs);
 
     RateSums<Dim, Real>& out = sums[i - begin];
     out.density_rate = total[At::density_rate];
     if constexpr (with_stress) std::copy_n(total + At::velocity_moment, Dim * Dim, out.velocity_moment.begin());
     if constexpr (with_stress || with_heat) std::copy_n(total + At::position_moment, n_symmetric<Dim>, out.position_moment.begin());
     if constexpr (with_sight) {
-      std::copy_n(total + At::sighted_velocity, Dim * Dim, sighted[i - begin].velocity_moment.begin());
-      std::copy_n(total + At::sighted_position, n_symmetric<Dim>, sighted[i - begin].position_moment.begin());
+      const Real least = hn::GetLane(hn::MinOfLanes(d, thinnest));
+      if (static_cast<Real>(sight_of_thinner) * least < record_i[Fields::rest_viscosity_at])
+        sighted[i - begin] = sighted_sums<PairKernel, Dim, Real>(fields, kernel, row, i);
+      else
+        sighted[i - begin] = {out.velocity_moment, out.position_moment};
     }
     if constexpr (with_heat) {
       // Twice, and the half of a mean.
@@ -149,13 +176,16 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
     const Real* record_i = records + i * stride;
     const auto density_i = hn::Set(d, record_i[Fields::density_at]);
     const auto inverse_density_i = hn::Set(d, 1 / record_i[Fields::density_at]);
-    constexpr int eta_at = Fields::rest_viscosity_of_forces_at;
+    // One load of four for the pressure and what sight takes.
+    constexpr int eta_at = Fields::rest_viscosity_of_forces_at, pressure_at = eta_at, n_pressure = Fields::specific_pressure_at + 1 - pressure_at;
     [[maybe_unused]] const auto sight_of_i = hn::Set(d, static_cast<Real>(sight_of_thinner) * record_i[eta_at]);
     [[maybe_unused]] const auto sight_i = hn::Set(d, static_cast<Real>(sight_of_thinner) * record_i[eta_at + 1]);
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
       const Neighbours<Dim, Real> pair(record_i, records, stride, index);
       const auto &x_ij = pair.x_ij, &v_ij = pair.v_ij;
-      const auto specific_pressure_j = load_field<Fields::specific_pressure_at>(records, stride, index);
+      Simd<Real> pressure_j[padded_fields(n_pressure)];
+      load_fields<pressure_at, n_pressure>(records, stride, index, pressure_j);
+      const auto specific_pressure_j = pressure_j[Fields::specific_pressure_at - pressure_at];
       const auto r2 = dot<Dim, Real>(x_ij, x_ij);
       const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(r2));
       const auto v_x = dot<Dim, Real>(v_ij, x_ij);
@@ -176,10 +206,8 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
         const auto scale = hn::Mul(volume_f, inverse_density_i);
         auto scale_i = scale, scale_j = scale;
         if constexpr (with_sight) {
-          Simd<Real> eta_j[padded_fields(2)];
-          load_fields<eta_at, 2>(records, stride, index, eta_j);
-          scale_i = hn::Mul(scale, hn::Min(one, hn::Mul(sight_i, eta_j[0])));
-          scale_j = hn::Mul(scale, hn::Min(one, hn::Mul(sight_of_i, eta_j[1])));
+          scale_i = hn::Mul(scale, hn::Min(one, hn::Mul(sight_i, pressure_j[0])));
+          scale_j = hn::Mul(scale, hn::Min(one, hn::Mul(sight_of_i, pressure_j[1])));
         }
         for (int a = 0; a < Dim; ++a) {
           auto traction = hn::Mul(stress_j[a * Dim], x_ij[0]);

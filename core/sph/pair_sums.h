@@ -57,7 +57,7 @@ struct PairFields {
   /// p/rho^2 [Pa m^(2 Dim)/kg^2], and p [Pa] of a liquid or the sound speed [m/s] of an ideal gas.
   static constexpr int specific_pressure_at = 14, pressure_at = 15, sound_speed_at = 15;
   /// Where sight differs, viscosity at rest eta [Pa s]: in the first pass, and in the second, which reads no heat, followed by 1/eta.
-  static constexpr int rest_viscosity_at = 14, rest_viscosity_of_forces_at = 8;
+  static constexpr int rest_viscosity_at = 14, rest_viscosity_of_forces_at = 12;
   /// S L row-major [Pa]. With hourglass control, then eta_h/2 [Pa s] and eta_h E/2 [Pa], E the symmetric velocity gradient, packed, its
   /// off-diagonal entries doubled.
   static constexpr int stress_at = 16, hourglass_at = stress_at + Dim * Dim;
