@@ -1,6 +1,7 @@
 #include "scenes/advise.h"
 
 #include "core/sph/rheology.h"
+#include "scenes/expected_speed.h"
 
 #include <fmt/format.h>
 
@@ -14,19 +15,20 @@ namespace {
 using Advice = std::vector<std::string>;
 
 void advise_on_sound_speed(const SimulationSetup& setup, Advice& advice) {
-  const double c = setup.parameters.sound_speed, v = setup.expected_speed;
+  const ExpectedSpeed expected = expect_speed(setup);
+  const double c = setup.parameters.sound_speed, v = expected.speed;
   // Without gravity and start nothing says how fast it will get.
   if (!(v > 0.0)) return;
   if (c < 5.0 * v)
     advice.push_back(fmt::format(
-        "[solver] sound_speed_m_s = {:.4g} is only {:.2g} times the fastest speed expected, {:.3g} m/s: the density may err by {:.0f} %; "
+        "[solver] sound_speed_m_s = {:.4g} is only {:.2g} times the fastest speed expected, {:.3g} m/s ({}): the density may err by {:.0f} %; "
         "choose {:.3g} for 1 %",
-        c, c / v, v, 100.0 * v * v / (c * c), 10.0 * v));
+        c, c / v, v, expected.reason, 100.0 * v * v / (c * c), 10.0 * v));
   if (c > 30.0 * v)
     advice.push_back(fmt::format(
-        "[solver] sound_speed_m_s = {:.4g} is {:.0f} times the fastest speed expected, {:.3g} m/s, and makes the shot {:.1f} times as long "
+        "[solver] sound_speed_m_s = {:.4g} is {:.0f} times the fastest speed expected, {:.3g} m/s ({}), and makes the shot {:.1f} times as long "
         "as {:.3g} would, at which the density errs by 1 %",
-        c, c / v, v, c / (10.0 * v), 10.0 * v));
+        c, c / v, v, expected.reason, c / (10.0 * v), 10.0 * v));
 }
 
 void advise_on_relaxed_stress(const SimulationSetup& setup, Advice& advice) {

@@ -179,11 +179,8 @@ DensityForm to_density_form(const std::string& name) {
   return name == "normalised_summation" ? DensityForm::normalised_summation : DensityForm::continuity;
 }
 
-/// v_e = sqrt(2 g H) and the fastest start, or the fastest collider.
-double compute_expected_speed(const Scene& scene, const Box3& scene_bounds, const SimulationSetup& setup) {
-  // H: how far anything can fall, over the whole scene along gravity.
-  const double g = scene.gravity.norm();
-  const double height = g > 0.0 ? scene_bounds.extent().dot(scene.gravity.cwiseAbs()) / g : 0.0;
+/// The fastest body, collider or emitter.
+double compute_fastest_start(const Scene& scene, const SimulationSetup& setup) {
   double start = 0.0;
   for (const BodySettings& body : scene.bodies) start = std::max(start, body.velocity.norm());
   for (std::size_t k = 0; k < setup.obstacles.size(); ++k) {
@@ -193,7 +190,14 @@ double compute_expected_speed(const Scene& scene, const Box3& scene_bounds, cons
     start = std::max(start, speed_bound(motion, 0.0, scene.shot.frames / scene.shot.fps, reach) + setup.obstacles[k].surface_velocity.norm());
   }
   for (const EmitterSettings& e : scene.emitters) start = std::max(start, e.flow_rate / (std::numbers::pi * e.radius * e.radius));
-  return std::sqrt(2.0 * g * height) + start;
+  return start;
+}
+
+/// sqrt(2 g H), H how far anything can fall, over the whole scene along gravity.
+double compute_free_fall(const Scene& scene, const Box3& scene_bounds) {
+  const double g = scene.gravity.norm();
+  const double height = g > 0.0 ? scene_bounds.extent().dot(scene.gravity.cwiseAbs()) / g : 0.0;
+  return std::sqrt(2.0 * g * height);
 }
 
 double automatic_sound_speed(double expected_speed) {
@@ -261,7 +265,8 @@ void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetu
   setup.spacing = std::cbrt(p.particle_volume);
   p.smoothing_length = scene.particles.smoothing_length_over_spacing * setup.spacing;
   p.gravity = scene.gravity;
-  setup.expected_speed = compute_expected_speed(scene, scene_bounds, setup);
+  setup.fastest_start = compute_fastest_start(scene, setup);
+  setup.expected_speed = compute_free_fall(scene, scene_bounds) + setup.fastest_start;
   p.sound_speed = scene.solver.sound_speed ? *scene.solver.sound_speed : automatic_sound_speed(setup.expected_speed);
   const bool viscoplastic = std::any_of(scene.materials.begin(), scene.materials.end(),
                                         [](const MaterialSettings& m) { return m.viscosity.law == "smd"; });

@@ -20,7 +20,8 @@ struct SimulationSetup {
   double spacing = 0.0;                    ///< between particles [m]
   double body_volume = 0.0;                ///< of all bodies' meshes [m^3]
   Box3 body_bounds;                        ///< of all bodies' meshes [m]
-  double expected_speed = 0.0;             ///< fastest, of a fall through the whole scene after the fastest start [m/s]
+  double fastest_start = 0.0;              ///< of bodies, colliders, emitters [m/s]
+  double expected_speed = 0.0;             ///< at most: of a fall through the whole scene after the fastest start [m/s]
   std::vector<std::string> warnings;       ///< what was mended in meshes, left out, or looks wrong
 };
 

@@ -1,11 +1,13 @@
 #include "scenes/advise.h"
 
 #include "scenes/check_scene.h"
+#include "scenes/expected_speed.h"
 #include "scenes/scene_reader.h"
 #include "tests/source_folder.h"
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <numeric>
 
 namespace smelt {
@@ -31,6 +33,32 @@ TEST(Advise, ASoundSpeedTooLowOrTooHigh) {
   expect_says(advice_on({"solver.sound_speed_m_s=8"}), "sound_speed_m_s = 8 is only");
   expect_says(advice_on({"solver.sound_speed_m_s=8"}), "choose 4");  // ten times 4.0 m/s
   expect_says(advice_on({"solver.sound_speed_m_s=500"}), "times as long");
+}
+
+/// Of a scene in scenes/, by name.
+ExpectedSpeed expected_of(const std::string& name, const std::vector<std::string>& overrides = {}) {
+  return expect_speed(build_simulation(read_scene(source_folder() / "scenes" / name, overrides)));
+}
+
+// What melts and falls may go as fast as a fall through the scene; lava that creeps down a mountain will not.
+TEST(Advise, LavaIsMeasuredByHowItCreeps) {
+  const ExpectedSpeed bunny = expected_of("melting_bunny.toml", {"particles.count=1000", "body.0.translate_m=[0.0, 2.0, 0.0]"});
+  expect_says(bunny.reason, "through the whole scene");
+  for (const std::string name : {"lava_volcano.toml", "lava_sugarloaf.toml"}) {
+    const SimulationSetup setup = build_simulation(read_scene(source_folder() / "scenes" / name, {}));
+    const ExpectedSpeed lava = expect_speed(setup);
+    expect_says(lava.reason, "in a layer");
+    EXPECT_LT(lava.speed, 20.0) << name << ": some metres a second";
+    EXPECT_GT(lava.speed, 5.0) << name;
+    EXPECT_GT(setup.expected_speed, 40.0) << name << ": of a fall down the mountain";
+  }
+}
+
+// What a vent 24 m wide pours of a Newtonian fluid, 1200 m^3/s, in a layer as wide: q = rho g d^3/(3 mu), u = rho g d^2/(2 mu).
+TEST(Advise, ANewtonianLayerRunsAtItsExactSpeed) {
+  const ExpectedSpeed found = expected_of("lava_volcano.toml", {"material.0.viscosity={ law = \"newtonian\", viscosity_Pa_s = 2e4 }"});
+  const double q = 1200.0 / 24.0, weight = 2600.0 * 9.81, d = std::cbrt(3.0 * 2e4 * q / weight), u = weight * d * d / 4e4;
+  EXPECT_NEAR(found.speed / u, 1.0, 1e-2);
 }
 
 TEST(Advise, ARelaxedStressTooSoft) {
