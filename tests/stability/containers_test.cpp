@@ -46,7 +46,7 @@ TEST(Containers, Dragon) {
 
 // On a floor, in an edge, in a corner and in the tip of a funnel, pressed down by gravity. A million steps take minutes; fewer do for every day.
 TEST(Containers, RestingSpheresStayWhereTheyAre) {
-  const int n_steps = full_run() ? 200000 : 5000;
+  const int n_steps = full_run() ? 1000000 : 5000;
   const Container box = make_closed_box(), funnel = make_funnel();
   const auto rest = [&](const Container& container, Vec3 position, const ContactResponse& response) {
     Colliders<3> colliders;
