@@ -1,6 +1,6 @@
 #include "scenes/expected_speed.h"
 
-#include "core/sph/rheology.h"
+#include "core/sph/stress_update.h"
 
 #include <fmt/format.h>
 

@@ -18,23 +18,6 @@ double power(double shear_rate, double index) {
   return std::pow(shear_rate, index);
 }
 
-struct StressAndSlope {
-  double stress;
-  double slope;
-};
-
-/// tau(y) and d tau/dy for y > 0.
-StressAndSlope shear_stress_and_slope(const FlowCurve& curve, double y) {
-  const double viscous = curve.consistency * power(y, curve.index);
-  const double plastic = curve.yield_stress + viscous;
-  const double viscous_slope = curve.index * viscous / y;
-  if (curve.yield_stress == 0.0) return {viscous, viscous_slope};
-  const double a = curve.rest_viscosity / curve.yield_stress;
-  // Beyond 40 the exponential is less than a rounding of 1.
-  const double rise = a * y > 40.0 ? 1.0 : -std::expm1(-a * y);
-  return {rise * plastic, rise * viscous_slope + a * (1.0 - rise) * plastic};
-}
-
 /// Through the points of a table, the logarithm where there is one.
 double table_value(const ThermalRange& table, double temperature) {
   if (std::isnan(temperature)) return temperature;
@@ -92,7 +75,10 @@ FlowCurve flow_curve_at(const Rheology& rheology, double u, double temperature) 
 }
 
 double shear_stress(const FlowCurve& curve, double shear_rate) {
-  return shear_rate > 0.0 ? shear_stress_and_slope(curve, shear_rate).stress : 0.0;
+  if (!(shear_rate > 0.0)) return 0.0;
+  const double plastic = curve.yield_stress + curve.consistency * power(shear_rate, curve.index);
+  if (curve.yield_stress == 0.0) return plastic;
+  return -std::expm1(-curve.rest_viscosity / curve.yield_stress * shear_rate) * plastic;
 }
 
 double viscosity(const FlowCurve& curve, double shear_rate) {
@@ -102,32 +88,6 @@ double viscosity(const FlowCurve& curve, double shear_rate) {
     if (curve.yield_stress > 0.0 || shear_rate <= 0.0) return curve.rest_viscosity;
   }
   return shear_stress(curve, shear_rate) / shear_rate;
-}
-
-double relaxed_shear_rate(const FlowCurve& curve, double modulus_dt, double trial_stress, double guess) {
-  if (trial_stress <= 0.0) return 0.0;
-  // tau >= 0 bounds the root from above by the rate at which the spring alone would unload.
-  double lower = 0.0;
-  double upper = trial_stress / modulus_dt;
-  double y = guess > lower && guess < upper ? guess : std::min(upper, trial_stress / (modulus_dt + curve.rest_viscosity));
-  if (!(y > 0.0)) y = 0.5 * upper;
-  const double tolerance = 1e-10 * trial_stress;
-  for (int iteration = 0; iteration < 200; ++iteration) {
-    const auto [stress, slope] = shear_stress_and_slope(curve, y);
-    const double residual = stress + modulus_dt * y - trial_stress;
-    if (std::abs(residual) <= tolerance) return y;
-    (residual > 0.0 ? upper : lower) = y;
-    const double newton = y - residual / (slope + modulus_dt);
-    // The error goes down by its square, times what the curve bends by over y: 40 at most where it matters.
-    if (std::abs(newton - y) <= 1e-6 * y && newton > 0.0) return newton;
-    // The knee at the yield stress throws Newton far off now and then: bisect, in the logarithm once there is a scale.
-    const double middle = lower > 0.0 ? std::sqrt(lower * upper) : 0.1 * upper;
-    y = newton > lower && newton < upper && (iteration < 12 || iteration % 2 == 0) ? newton : middle;
-    if (upper - lower <= 1e-15 * upper) return y;
-  }
-  throw InternalError(fmt::format("relaxed_shear_rate: no root for trial stress {} Pa, G dt {} Pa s, tau0 {}, K {}, n {}, eta0 {}",
-                                  trial_stress, modulus_dt, curve.yield_stress, curve.consistency, curve.index,
-                                  curve.rest_viscosity));
 }
 
 }  // namespace smelt

@@ -1,5 +1,5 @@
 #pragma once
-// The Souza Mendes-Dutra flow curve and its use in a relaxed (Maxwell) stress.
+// The Souza Mendes-Dutra flow curve.
 
 #include "core/sph/material.h"
 
@@ -32,11 +32,5 @@ double shear_stress(const FlowCurve& curve, double shear_rate);
 
 /// eta(gdot) [Pa s]; tends to eta0 as gdot -> 0, without a division by zero.
 double viscosity(const FlowCurve& curve, double shear_rate);
-
-/// Backward-Euler relaxation of a Maxwell element whose dashpot follows the flow curve: the shear rate y >= 0 of the dashpot with
-///   tau(y) + modulus_dt y = trial_stress,
-/// where modulus_dt = G dt [Pa s]. Unique, as tau grows with y. `guess` [1/s] is where the search starts; it changes the
-/// result by rounding only. Solved to 1e-10 of trial_stress.
-double relaxed_shear_rate(const FlowCurve& curve, double modulus_dt, double trial_stress, double guess);
 
 }  // namespace smelt

@@ -11,6 +11,7 @@
 #include "core/sph/particles.h"
 #include "core/sph/periodic.h"
 #include "core/sph/pressure_sums.h"
+#include "core/sph/stress_update.h"
 #include "core/sph/time_step.h"
 #include "core/sph/walls.h"
 
@@ -170,8 +171,9 @@ class Solver {
   void evaluate_pressure_gradients();
   void add_density_diffusion(std::size_t begin, std::size_t end, RateSums<Dim, Real>* rates) const;
   void add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<Dim, Real>& rate, SightedSums<Dim, Real>& sighted) const;
-  void advance_stress(std::size_t i, double dt, Mat<Dim> correction, RateSums<Dim, Real>& rate,
-                      const SightedSums<Dim, Real>& sighted);
+  void collect_stress(std::size_t i, const Mat<Dim>& correction, RateSums<Dim, Real>& rate,
+                      const SightedSums<Dim, Real>& sighted, StressBlock<Dim>& stresses) const;
+  void advance_stresses(std::size_t first, double dt, StressBlock<Dim>& stresses);
   void apply_wall_forces(std::size_t slot);
   void sum_body_loads();
   double pressure(std::size_t i) const;
@@ -182,8 +184,8 @@ class Solver {
   double exchange_heat(std::size_t i, double dt, double time, double target, HeatLedger& passed) const;
   SurfaceExchange surface_exchange(std::size_t i, double time) const;
   void pack_forces(std::size_t i);
-  void pack_stress(std::size_t i, const Mat<Dim>& corrected_stress);
-  void pack_hourglass(std::size_t i, const Mat<Dim>& velocity_gradient);
+  void pack_stress(std::size_t i, std::size_t k, const StressBlock<Dim>& stresses);
+  void pack_hourglass(std::size_t i, std::size_t k, const StressBlock<Dim>& stresses);
   void evaluate_forces();
   void kick(double dt);
   void drift(double dt);

@@ -105,12 +105,13 @@ void Solver<Dim, Real>::pack_forces(std::size_t i) {
   record[Fields::specific_pressure_at] = static_cast<Real>(pressure(i) / (rho * rho));
 }
 
-/// At once, while other particles' rates are still summed: the first pass does not read it.
+/// S L of particle `i`, the k-th of `stresses`. At once, while other particles' rates are still summed: the first pass
+/// does not read it.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::pack_stress(std::size_t i, const Mat<Dim>& corrected_stress) {
+void Solver<Dim, Real>::pack_stress(std::size_t i, std::size_t k, const StressBlock<Dim>& stresses) {
   Real* record = fields_.record(i) + PairFields<Dim, Real>::stress_at;
-  for (int a = 0; a < Dim; ++a)
-    for (int b = 0; b < Dim; ++b) record[a * Dim + b] = static_cast<Real>(corrected_stress(a, b));
+  for (std::size_t ab = 0; ab < Dim * Dim; ++ab) record[ab] = static_cast<Real>(stresses.corrected_stress[ab][k]);
+  if (terms_.pair.hourglass) pack_hourglass(i, k, stresses);
 }
 
 /// The same for an ideal gas after a step of dt. Its forces depend on energy and velocity, so both are wanted at the step's end: half a
@@ -133,15 +134,18 @@ void Solver<Dim, Real>::pack_gas(std::size_t i, double dt) {
 
 /// A solid's viscosity would need tiny steps: with a relaxed stress, that of a shear wave over a quarter of a smoothing length is enough.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::pack_hourglass(std::size_t i, const Mat<Dim>& velocity_gradient) {
+void Solver<Dim, Real>::pack_hourglass(std::size_t i, std::size_t k, const StressBlock<Dim>& stresses) {
   double eta = particles_.viscosity[i];
   if (terms_.relaxed)
     eta = std::min(eta, 0.25 * particles_.density[i] * parameters_.shear_wave_speed * parameters_.smoothing_length);
   const double half = 0.5 * parameters_.hourglass_control * eta;
   Real* record = fields_.record(i) + PairFields<Dim, Real>::hourglass_at;
   record[0] = static_cast<Real>(half);
-  const Symmetric<Dim> doubled = to_symmetric<Dim>(velocity_gradient + velocity_gradient.transpose());
-  for (int k = 0; k < n_symmetric<Dim>; ++k) record[1 + k] = static_cast<Real>((k < Dim ? 0.5 : 1.0) * half * doubled[k]);
+  for (int m = 0; m < n_symmetric<Dim>; ++m) {
+    const auto [a, b] = symmetric_entry<Dim>(m);
+    const double strain_rate = stresses.gradient[a * Dim + b][k] + stresses.gradient[b * Dim + a][k];
+    record[1 + m] = static_cast<Real>((a == b ? 0.5 : 1.0) * half * strain_rate);
+  }
 }
 
 template class Solver<3, float>;

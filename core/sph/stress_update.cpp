@@ -1,6 +1,17 @@
-#include "core/sph/stress_update.h"
+// Compiled once for every instruction set, as pair_sums.cpp is.
+#define HWY_BASELINE_TARGETS HWY_AVX2
+#define HWY_DISABLED_TARGETS HWY_AVX3_DL
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "core/sph/stress_update.cpp"
+#include <hwy/foreach_target.h>  // must come before highway.h
+
+#include "core/sph/stress_update-inl.h"
+
+#if HWY_ONCE
+#include "core/error.h"
 
 #include <cmath>
+#include <string>
 
 namespace smelt {
 
@@ -9,15 +20,6 @@ namespace {
 template <int Dim>
 double magnitude(const Mat<Dim>& symmetric) {
   return std::sqrt(0.5 * symmetric.squaredNorm());
-}
-
-/// Rotation over a step with constant velocity gradient: (1 - H)^-1 (1 + H) of the skew H = W dt/2, orthogonal to rounding. As
-/// H^3 = -|H|^2 H with |H|^2 = H:H/2, it is 1 + 2 (H + H^2)/(1 + |H|^2).
-template <int Dim>
-Mat<Dim> step_rotation(const Mat<Dim>& velocity_gradient, double dt) {
-  const Mat<Dim> half_spin = 0.25 * dt * (velocity_gradient - velocity_gradient.transpose());
-  const double scale = 2.0 / (1.0 + 0.5 * half_spin.squaredNorm());
-  return Mat<Dim>::Identity() + scale * (half_spin + half_spin * half_spin);
 }
 
 }  // namespace
@@ -35,26 +37,84 @@ StressState<Dim> instant_stress(const FlowCurve& curve, const Mat<Dim>& velocity
 }
 
 template <int Dim>
-StressState<Dim> relaxed_stress(const FlowCurve& curve, double shear_modulus, double dt, const Mat<Dim>& velocity_gradient,
-                                const StressState<Dim>& before) {
-  Mat<Dim> strain_rate = velocity_gradient + velocity_gradient.transpose();
-  strain_rate -= strain_rate.trace() / Dim * Mat<Dim>::Identity();
-  const Mat<Dim> rotation = step_rotation<Dim>(velocity_gradient, dt);
-  const Mat<Dim> old_stress = to_matrix<Dim>(before.stress);
-  const Mat<Dim> trial = rotation * old_stress * rotation.transpose() + shear_modulus * dt * strain_rate;
-
-  const double trial_magnitude = magnitude<Dim>(trial);
-  if (trial_magnitude == 0.0) return {Symmetric<Dim>::Zero(), viscosity(curve, 0.0)};
-  const double guess = before.viscosity > 0.0 ? magnitude<Dim>(old_stress) / before.viscosity : 0.0;
-  const double rate = relaxed_shear_rate(curve, shear_modulus * dt, trial_magnitude, guess);
-  const double relaxed_magnitude = trial_magnitude - shear_modulus * dt * rate;
-  return {to_symmetric<Dim>(relaxed_magnitude / trial_magnitude * trial),
-          rate > 0.0 ? relaxed_magnitude / rate : curve.rest_viscosity};
+void follow_strain_rates(StressBlock<Dim>& block) {
+  for (std::size_t k = 0; k < block.size; ++k) {
+    Mat<Dim> gradient;
+    for (int a = 0; a < Dim; ++a)
+      for (int b = 0; b < Dim; ++b) gradient(a, b) = block.gradient[a * Dim + b][k];
+    const StressState<Dim> now = instant_stress<Dim>(block.curve(k), gradient);
+    for (int m = 0; m < n_symmetric<Dim>; ++m) block.stress[m][k] = now.stress[m];
+    block.viscosity[k] = now.viscosity;
+  }
 }
 
-#define SMELT_INSTANTIATE(Dim)                                                                              \
-  template double stress_magnitude<Dim>(const Symmetric<Dim>&);                                             \
-  template StressState<Dim> instant_stress<Dim>(const FlowCurve&, const Mat<Dim>&);                         \
+namespace {
+
+[[noreturn]] void fail_to_relax(const FlowCurve& curve, double modulus_dt, const std::string& of) {
+  throw InternalError(fmt::format("relaxed stress: no shear rate for {}, G dt {} Pa s, tau0 {}, K {}, n {}, eta0 {}", of, modulus_dt,
+                                  curve.yield_stress, curve.consistency, curve.index, curve.rest_viscosity));
+}
+
+template <int Dim>
+[[noreturn]] void fail_to_relax(double dt, const StressBlock<Dim>& block, std::size_t k) {
+  double rate2 = 0.0;
+  for (const auto& entry : block.gradient) rate2 += entry[k] * entry[k];
+  fail_to_relax(block.curve(k), block.modulus[k] * dt, fmt::format("a velocity gradient of {} 1/s", std::sqrt(rate2)));
+}
+
+}  // namespace
+
+HWY_EXPORT(relaxed_shear_rate);
+
+double relaxed_shear_rate(const FlowCurve& curve, double modulus_dt, double trial_stress, double guess) {
+  const double rate = HWY_DYNAMIC_DISPATCH(relaxed_shear_rate)(curve, modulus_dt, trial_stress, guess);
+  if (rate < 0.0) fail_to_relax(curve, modulus_dt, fmt::format("a trial stress of {} Pa", trial_stress));
+  return rate;
+}
+
+#define SMELT_DISPATCH(Dim)                                                                                                \
+  HWY_EXPORT(correct_gradients_##Dim);                                                                                     \
+  HWY_EXPORT(correct_stresses_##Dim);                                                                                      \
+  HWY_EXPORT(relax_stresses_##Dim);                                                                                        \
+  template <>                                                                                                              \
+  void correct_gradients<Dim>(StressBlock<Dim> & block) {                                                                  \
+    HWY_DYNAMIC_DISPATCH(correct_gradients_##Dim)(block);                                                                  \
+  }                                                                                                                        \
+  template <>                                                                                                              \
+  void correct_stresses<Dim>(StressBlock<Dim> & block) {                                                                   \
+    HWY_DYNAMIC_DISPATCH(correct_stresses_##Dim)(block);                                                                   \
+  }                                                                                                                        \
+  template <>                                                                                                              \
+  void relax_stresses<Dim>(double dt, StressBlock<Dim>& block) {                                                           \
+    const std::ptrdiff_t unsolved = HWY_DYNAMIC_DISPATCH(relax_stresses_##Dim)(dt, block);                                 \
+    if (unsolved >= 0) fail_to_relax<Dim>(dt, block, static_cast<std::size_t>(unsolved));                                  \
+  }
+SMELT_DISPATCH(1)
+SMELT_DISPATCH(2)
+SMELT_DISPATCH(3)
+#undef SMELT_DISPATCH
+
+template <int Dim>
+StressState<Dim> relaxed_stress(const FlowCurve& curve, double shear_modulus, double dt, const Mat<Dim>& velocity_gradient,
+                                const StressState<Dim>& before) {
+  StressBlock<Dim> block{};
+  block.size = 1;
+  for (int a = 0; a < Dim; ++a)
+    for (int b = 0; b < Dim; ++b) block.gradient[a * Dim + b][0] = velocity_gradient(a, b);
+  for (int m = 0; m < n_symmetric<Dim>; ++m) block.stress[m][0] = before.stress[m];
+  block.viscosity[0] = before.viscosity;
+  block.set_curve(0, curve);
+  block.modulus[0] = shear_modulus;
+  relax_stresses<Dim>(dt, block);
+  StressState<Dim> after{Symmetric<Dim>::Zero(), block.viscosity[0]};
+  for (int m = 0; m < n_symmetric<Dim>; ++m) after.stress[m] = block.stress[m][0];
+  return after;
+}
+
+#define SMELT_INSTANTIATE(Dim)                                                      \
+  template void follow_strain_rates<Dim>(StressBlock<Dim>&);                        \
+  template double stress_magnitude<Dim>(const Symmetric<Dim>&);                     \
+  template StressState<Dim> instant_stress<Dim>(const FlowCurve&, const Mat<Dim>&); \
   template StressState<Dim> relaxed_stress<Dim>(const FlowCurve&, double, double, const Mat<Dim>&, const StressState<Dim>&);
 SMELT_INSTANTIATE(1)
 SMELT_INSTANTIATE(2)
@@ -62,3 +122,4 @@ SMELT_INSTANTIATE(3)
 #undef SMELT_INSTANTIATE
 
 }  // namespace smelt
+#endif
