@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 
 #include <cmath>
+#include <random>
 
 namespace smelt {
 namespace {
@@ -127,6 +129,55 @@ TEST(StressUpdate, StressTurnsWithTheMaterialAndKeepsItsSize) {
   EXPECT_NEAR(state.stress[0], -10.0, 1e-5);
   EXPECT_NEAR(state.stress[1], 10.0, 1e-5);
   EXPECT_NEAR(state.stress[3], 0.0, 1e-5);
+}
+
+/// Solids, liquids and what is between them, some of it turning, with powers that have fast paths and one that has none.
+StressBlock<3> make_mixed_block() {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  StressBlock<3> block{};
+  block.size = 29;  // not a whole number of vectors
+  for (std::size_t k = 0; k < block.size; ++k) {
+    const double speed = std::pow(10.0, 3.0 * uniform(random));
+    for (auto& entry : block.gradient) entry[k] = speed * uniform(random);
+    Mat<3> stress = Mat<3>::NullaryExpr([&] { return 50.0 * uniform(random); });
+    stress += stress.transpose().eval();
+    for (int m = 0; m < 6; ++m) block.stress[static_cast<std::size_t>(m)][k] = to_symmetric<3>(stress)[m];
+    block.viscosity[k] = k % 7 == 0 ? 0.0 : 1e3 * (1.1 + uniform(random));
+    const double yields[] = {0.0, 5.0, 3e4}, indices[] = {0.5, 1.0, 0.3};
+    block.set_curve(k, {yields[k % 3], 20.0, indices[k / 3 % 3], k % 5 == 0 ? 1e9 : 1e4});
+    block.modulus[k] = 1e5;
+  }
+  return block;
+}
+
+TEST(StressUpdate, BytesDependNeitherOnCompanyNorOnInstructions) {
+  constexpr double dt = 1e-4;
+  const StressBlock<3> before = make_mixed_block();
+  StressBlock<3> widest = before, narrow = before;
+  relax_stresses<3>(dt, widest);
+  hwy::SetSupportedTargetsForTest(HWY_AVX2);
+  hwy::GetChosenTarget().DeInit();
+  relax_stresses<3>(dt, narrow);
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
+  for (std::size_t k = 0; k < before.size; ++k) {
+    Mat<3> gradient;
+    StressState<3> state{Symmetric<3>::Zero(), before.viscosity[k]};
+    for (int a = 0; a < 3; ++a)
+      for (int b = 0; b < 3; ++b) gradient(a, b) = before.gradient[static_cast<std::size_t>(a * 3 + b)][k];
+    for (std::size_t m = 0; m < 6; ++m) state.stress[static_cast<Eigen::Index>(m)] = before.stress[m][k];
+    const StressState<3> alone = relaxed_stress<3>(before.curve(k), before.modulus[k], dt, gradient, state);
+    for (std::size_t m = 0; m < 6; ++m) {
+      EXPECT_EQ(widest.stress[m][k], narrow.stress[m][k]) << "particle " << k << " entry " << m;
+      EXPECT_EQ(widest.stress[m][k], alone.stress[static_cast<Eigen::Index>(m)]) << "particle " << k << " entry " << m;
+    }
+    EXPECT_EQ(widest.viscosity[k], narrow.viscosity[k]) << "particle " << k;
+    EXPECT_EQ(widest.viscosity[k], alone.viscosity) << "particle " << k;
+    // |S| and eta are of the law: S is what the spring holds at the dashpot's rate.
+    const double rate = stress_magnitude<3>(alone.stress) / alone.viscosity;
+    EXPECT_NEAR(shear_stress(before.curve(k), rate) / stress_magnitude<3>(alone.stress), 1.0, 1e-6) << "particle " << k;
+  }
 }
 
 }  // namespace
