@@ -15,7 +15,7 @@ namespace {
 
 /// What `check` says of the bunny's scene with these settings, in one text.
 std::string advice_on(std::vector<std::string> overrides) {
-  overrides.push_back("particles.count=1000");
+  overrides.emplace_back("particles.count=1000");
   const Scene scene = read_scene(source_folder() / "scenes/melting_bunny.toml", overrides);
   const std::vector<std::string> advice = forecast_scene(scene, 1, false).advice;
   return std::accumulate(advice.begin(), advice.end(), std::string(), [](const std::string& a, const std::string& b) { return a + b + "\n"; });
