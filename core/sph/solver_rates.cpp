@@ -100,12 +100,11 @@ HeatLedger Solver<Dim, Real>::advance_block(std::size_t begin, std::size_t end, 
       if (dt > 0.0) passed += advance_heat(i, rate.heat, dt, time);
       heat_balance_[i] = balance_heat<Dim, Real>(rate, correction);
     }
-    if (terms_.pair.stress) {
-      collect_stress(i, correction, rate, sighted[i - begin], stresses);
-      if (stresses.size == StressBlock<Dim>::capacity || i + 1 == end) advance_stresses(i + 1 - stresses.size, dt, stresses);
-    }
+    if (terms_.pair.stress) collect_stress(i, correction, rate, sighted[i - begin], stresses);
     if (parameters_.density == DensityForm::continuity && !is_driven(i))
       particles_.density[i] += dt * rate.density_rate;
+    if (stresses.size == StressBlock<Dim>::capacity || (stresses.size > 0 && i + 1 == end))
+      advance_stresses(i + 1 - stresses.size, dt, stresses);
     if (terms_.pair.xsph)
       for (int a = 0; a < Dim; ++a) transport_[i][a] = static_cast<Real>(parameters_.xsph) * rate.xsph[a];
   }
