@@ -67,8 +67,8 @@ class FlowCurves {
 
 /// relaxed_shear_rate of a vector of particles; `unsolved` are those for which no root was found. Newton's method, and
 /// bisection where that leaves the bounds.
-HWY_INLINE StressVec relaxed_shear_rates(const FlowCurves& curves, StressVec rest_viscosity, StressVec modulus_dt, StressVec trial,
-                                         StressVec guess, StressMask& unsolved) {
+HWY_INLINE StressVec relaxed_shear_rates(const FlowCurves& curves, StressVec rest_viscosity, StressVec modulus_dt,
+                                         StressVec trial, StressVec guess, StressMask& unsolved) {
   const StressTag d;
   const auto zero = hn::Zero(d);
   unsolved = hn::Not(hn::Le(trial, zero));
@@ -103,7 +103,8 @@ HWY_INLINE StressVec relaxed_shear_rates(const FlowCurves& curves, StressVec res
     if (!bisects && hn::AllTrue(d, inside)) {
       y = newton;
     } else {
-      const auto middle = hn::IfThenElse(hn::Gt(lower, zero), hn::Sqrt(hn::Mul(lower, upper)), hn::Mul(hn::Set(d, 0.1), upper));
+      const auto middle =
+          hn::IfThenElse(hn::Gt(lower, zero), hn::Sqrt(hn::Mul(lower, upper)), hn::Mul(hn::Set(d, 0.1), upper));
       y = bisects ? middle : hn::IfThenElse(inside, newton, middle);
     }
     settle(hn::Le(hn::Sub(upper, lower), hn::Mul(hn::Set(d, 1e-15), upper)), y);
@@ -116,17 +117,19 @@ template <int Dim>
 struct Matrices {
   StressVec entry[Dim][Dim];
 
-  static HWY_INLINE Matrices load(const std::array<typename StressBlock<Dim>::Field, Dim * Dim>& fields, std::size_t k) {
+  static HWY_INLINE Matrices load(const std::array<typename StressBlock<Dim>::Field, Dim * Dim>& fields,
+                                  std::size_t k) {
     Matrices m;
     for (int a = 0; a < Dim; ++a)
       for (int b = 0; b < Dim; ++b) m.entry[a][b] = hn::Load(StressTag(), fields[a * Dim + b].data() + k);
     return m;
   }
-  static HWY_INLINE Matrices load_symmetric(const std::array<typename StressBlock<Dim>::Field, n_symmetric<Dim>>& fields,
-                                            std::size_t k) {
+  static HWY_INLINE Matrices
+  load_symmetric(const std::array<typename StressBlock<Dim>::Field, n_symmetric<Dim>>& fields, std::size_t k) {
     Matrices m;
     for (int a = 0; a < Dim; ++a)
-      for (int b = 0; b < Dim; ++b) m.entry[a][b] = hn::Load(StressTag(), fields[symmetric_index<Dim>(a, b)].data() + k);
+      for (int b = 0; b < Dim; ++b)
+        m.entry[a][b] = hn::Load(StressTag(), fields[symmetric_index<Dim>(a, b)].data() + k);
     return m;
   }
   HWY_INLINE void store(std::array<typename StressBlock<Dim>::Field, Dim * Dim>& fields, std::size_t k) const {
@@ -159,8 +162,8 @@ struct Matrices {
   }
 };
 
-/// Rotation over a step with constant velocity gradient: (1 - H)^-1 (1 + H) of the skew H = W dt/2, orthogonal to rounding. As
-/// H^3 = -|H|^2 H with |H|^2 = H:H/2, it is 1 + 2 (H + H^2)/(1 + |H|^2).
+/// Rotation over a step with constant velocity gradient: (1 - H)^-1 (1 + H) of the skew H = W dt/2, orthogonal to
+/// rounding. As H^3 = -|H|^2 H with |H|^2 = H:H/2, it is 1 + 2 (H + H^2)/(1 + |H|^2).
 template <int Dim>
 HWY_INLINE Matrices<Dim> step_rotation(const Matrices<Dim>& gradient, double dt) {
   const StressTag d;
@@ -198,7 +201,8 @@ void correct_gradients(StressBlock<Dim>& block) {
 template <int Dim>
 void correct_stresses(StressBlock<Dim>& block) {
   for_each_vector(block, [&](std::size_t k) HWY_ATTR {
-    (Matrices<Dim>::load_symmetric(block.stress, k) * Matrices<Dim>::load(block.correction, k)).store(block.corrected_stress, k);
+    (Matrices<Dim>::load_symmetric(block.stress, k) * Matrices<Dim>::load(block.correction, k))
+        .store(block.corrected_stress, k);
   });
 }
 
@@ -209,7 +213,8 @@ std::ptrdiff_t relax_stresses(double dt, StressBlock<Dim>& block) {
   const auto zero = hn::Zero(d);
   std::ptrdiff_t first_unsolved = -1;
   for_each_vector(block, [&](std::size_t k) HWY_ATTR {
-    const auto load = [&](const typename StressBlock<Dim>::Field& field) HWY_ATTR { return hn::Load(d, field.data() + k); };
+    const auto load = [&](const typename StressBlock<Dim>::Field& field)
+                          HWY_ATTR { return hn::Load(d, field.data() + k); };
     const Matrices<Dim> gradient = Matrices<Dim>::load(block.gradient, k);
     const Matrices<Dim> before = Matrices<Dim>::load_symmetric(block.stress, k);
     const Matrices<Dim> rotation = step_rotation<Dim>(gradient, dt);
@@ -239,7 +244,8 @@ std::ptrdiff_t relax_stresses(double dt, StressBlock<Dim>& block) {
       const auto [a, b] = symmetric_entry<Dim>(m);
       hn::Store(hn::Mul(ratio, trial.entry[a][b]), d, block.stress[m].data() + k);
     }
-    hn::Store(hn::IfThenElse(hn::Gt(rate, zero), hn::Div(relaxed, rate), rest_viscosity), d, block.viscosity.data() + k);
+    hn::Store(hn::IfThenElse(hn::Gt(rate, zero), hn::Div(relaxed, rate), rest_viscosity), d,
+              block.viscosity.data() + k);
   });
   return first_unsolved;
 }
@@ -248,18 +254,25 @@ std::ptrdiff_t relax_stresses(double dt, StressBlock<Dim>& block) {
 inline double relaxed_shear_rate(const FlowCurve& curve, double modulus_dt, double trial_stress, double guess) {
   const StressTag d;
   const auto rest_viscosity = hn::Set(d, curve.rest_viscosity);
-  const FlowCurves curves(hn::Set(d, curve.yield_stress), hn::Set(d, curve.consistency), hn::Set(d, curve.index), rest_viscosity);
+  const FlowCurves curves(hn::Set(d, curve.yield_stress), hn::Set(d, curve.consistency), hn::Set(d, curve.index),
+                          rest_viscosity);
   StressMask unsolved;
-  const auto rate =
-      relaxed_shear_rates(curves, rest_viscosity, hn::Set(d, modulus_dt), hn::Set(d, trial_stress), hn::Set(d, guess), unsolved);
+  const auto rate = relaxed_shear_rates(curves, rest_viscosity, hn::Set(d, modulus_dt), hn::Set(d, trial_stress),
+                                        hn::Set(d, guess), unsolved);
   return hn::AllFalse(d, unsolved) ? hn::GetLane(rate) : -1.0;
 }
 
 // Highway's tables hold plain functions: one for each dimension.
-#define SMELT_INSTANTIATE(Dim)                                                                                     \
-  inline void correct_gradients_##Dim(StressBlock<Dim>& block) { HWY_NAMESPACE::correct_gradients<Dim>(block); }   \
-  inline void correct_stresses_##Dim(StressBlock<Dim>& block) { HWY_NAMESPACE::correct_stresses<Dim>(block); }     \
-  inline std::ptrdiff_t relax_stresses_##Dim(double dt, StressBlock<Dim>& block) { return HWY_NAMESPACE::relax_stresses<Dim>(dt, block); }
+#define SMELT_INSTANTIATE(Dim)                                                     \
+  inline void correct_gradients_##Dim(StressBlock<Dim>& block) {                   \
+    HWY_NAMESPACE::correct_gradients<Dim>(block);                                  \
+  }                                                                                \
+  inline void correct_stresses_##Dim(StressBlock<Dim>& block) {                    \
+    HWY_NAMESPACE::correct_stresses<Dim>(block);                                   \
+  }                                                                                \
+  inline std::ptrdiff_t relax_stresses_##Dim(double dt, StressBlock<Dim>& block) { \
+    return HWY_NAMESPACE::relax_stresses<Dim>(dt, block);                          \
+  }
 SMELT_INSTANTIATE(1)
 SMELT_INSTANTIATE(2)
 SMELT_INSTANTIATE(3)

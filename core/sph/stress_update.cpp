@@ -51,8 +51,9 @@ void follow_strain_rates(StressBlock<Dim>& block) {
 namespace {
 
 [[noreturn]] void fail_to_relax(const FlowCurve& curve, double modulus_dt, const std::string& of) {
-  throw InternalError(fmt::format("relaxed stress: no shear rate for {}, G dt {} Pa s, tau0 {}, K {}, n {}, eta0 {}", of, modulus_dt,
-                                  curve.yield_stress, curve.consistency, curve.index, curve.rest_viscosity));
+  throw InternalError(fmt::format("relaxed stress: no shear rate for {}, G dt {} Pa s, tau0 {}, K {}, n {}, eta0 {}",
+                                  of, modulus_dt, curve.yield_stress, curve.consistency, curve.index,
+                                  curve.rest_viscosity));
 }
 
 template <int Dim>
@@ -72,22 +73,22 @@ double relaxed_shear_rate(const FlowCurve& curve, double modulus_dt, double tria
   return rate;
 }
 
-#define SMELT_DISPATCH(Dim)                                                                                                \
-  HWY_EXPORT(correct_gradients_##Dim);                                                                                     \
-  HWY_EXPORT(correct_stresses_##Dim);                                                                                      \
-  HWY_EXPORT(relax_stresses_##Dim);                                                                                        \
-  template <>                                                                                                              \
-  void correct_gradients<Dim>(StressBlock<Dim> & block) {                                                                  \
-    HWY_DYNAMIC_DISPATCH(correct_gradients_##Dim)(block);                                                                  \
-  }                                                                                                                        \
-  template <>                                                                                                              \
-  void correct_stresses<Dim>(StressBlock<Dim> & block) {                                                                   \
-    HWY_DYNAMIC_DISPATCH(correct_stresses_##Dim)(block);                                                                   \
-  }                                                                                                                        \
-  template <>                                                                                                              \
-  void relax_stresses<Dim>(double dt, StressBlock<Dim>& block) {                                                           \
-    const std::ptrdiff_t unsolved = HWY_DYNAMIC_DISPATCH(relax_stresses_##Dim)(dt, block);                                 \
-    if (unsolved >= 0) fail_to_relax<Dim>(dt, block, static_cast<std::size_t>(unsolved));                                  \
+#define SMELT_DISPATCH(Dim)                                                                \
+  HWY_EXPORT(correct_gradients_##Dim);                                                     \
+  HWY_EXPORT(correct_stresses_##Dim);                                                      \
+  HWY_EXPORT(relax_stresses_##Dim);                                                        \
+  template <>                                                                              \
+  void correct_gradients<Dim>(StressBlock<Dim> & block) {                                  \
+    HWY_DYNAMIC_DISPATCH(correct_gradients_##Dim)(block);                                  \
+  }                                                                                        \
+  template <>                                                                              \
+  void correct_stresses<Dim>(StressBlock<Dim> & block) {                                   \
+    HWY_DYNAMIC_DISPATCH(correct_stresses_##Dim)(block);                                   \
+  }                                                                                        \
+  template <>                                                                              \
+  void relax_stresses<Dim>(double dt, StressBlock<Dim>& block) {                           \
+    const std::ptrdiff_t unsolved = HWY_DYNAMIC_DISPATCH(relax_stresses_##Dim)(dt, block); \
+    if (unsolved >= 0) fail_to_relax<Dim>(dt, block, static_cast<std::size_t>(unsolved));  \
   }
 SMELT_DISPATCH(1)
 SMELT_DISPATCH(2)
@@ -95,8 +96,8 @@ SMELT_DISPATCH(3)
 #undef SMELT_DISPATCH
 
 template <int Dim>
-StressState<Dim> relaxed_stress(const FlowCurve& curve, double shear_modulus, double dt, const Mat<Dim>& velocity_gradient,
-                                const StressState<Dim>& before) {
+StressState<Dim> relaxed_stress(const FlowCurve& curve, double shear_modulus, double dt,
+                                const Mat<Dim>& velocity_gradient, const StressState<Dim>& before) {
   StressBlock<Dim> block{};
   block.size = 1;
   for (int a = 0; a < Dim; ++a)
@@ -111,11 +112,12 @@ StressState<Dim> relaxed_stress(const FlowCurve& curve, double shear_modulus, do
   return after;
 }
 
-#define SMELT_INSTANTIATE(Dim)                                                      \
-  template void follow_strain_rates<Dim>(StressBlock<Dim>&);                        \
-  template double stress_magnitude<Dim>(const Symmetric<Dim>&);                     \
-  template StressState<Dim> instant_stress<Dim>(const FlowCurve&, const Mat<Dim>&); \
-  template StressState<Dim> relaxed_stress<Dim>(const FlowCurve&, double, double, const Mat<Dim>&, const StressState<Dim>&);
+#define SMELT_INSTANTIATE(Dim)                                                                     \
+  template void follow_strain_rates<Dim>(StressBlock<Dim>&);                                       \
+  template double stress_magnitude<Dim>(const Symmetric<Dim>&);                                    \
+  template StressState<Dim> instant_stress<Dim>(const FlowCurve&, const Mat<Dim>&);                \
+  template StressState<Dim> relaxed_stress<Dim>(const FlowCurve&, double, double, const Mat<Dim>&, \
+                                                const StressState<Dim>&);
 SMELT_INSTANTIATE(1)
 SMELT_INSTANTIATE(2)
 SMELT_INSTANTIATE(3)

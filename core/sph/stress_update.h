@@ -20,25 +20,26 @@ struct StressState {
 template <int Dim>
 double stress_magnitude(const Symmetric<Dim>& stress);
 
-/// S = eta(gdot) D with D = grad v + (grad v)^T, gdot = sqrt(tr(D^2)/2)  [P 4-45, 4-46, 6-1]. Explicit integration of it is stable only
-/// for dt < 0.1 h^2 rho / (8 eta) [P 6-17]: use it where eta is small everywhere.
+/// S = eta(gdot) D with D = grad v + (grad v)^T, gdot = sqrt(tr(D^2)/2)  [P 4-45, 4-46, 6-1]. Explicit integration of
+/// it is stable only for dt < 0.1 h^2 rho / (8 eta) [P 6-17]: use it where eta is small everywhere.
 template <int Dim>
 StressState<Dim> instant_stress(const FlowCurve& curve, const Mat<Dim>& velocity_gradient);
 
-/// Backward-Euler relaxation of a Maxwell element whose dashpot follows the flow curve: the shear rate y >= 0 of the dashpot with
+/// Backward-Euler relaxation of a Maxwell element whose dashpot follows the flow curve: the shear rate y >= 0 of the
+/// dashpot with
 ///   tau(y) + modulus_dt y = trial_stress,
-/// where modulus_dt = G dt [Pa s]. Unique, as tau grows with y. `guess` [1/s] is where the search starts; it changes the
-/// result by rounding only. Solved to 1e-10 of trial_stress.
+/// where modulus_dt = G dt [Pa s]. Unique, as tau grows with y. `guess` [1/s] is where the search starts; it changes
+/// the result by rounding only. Solved to 1e-10 of trial_stress.
 double relaxed_shear_rate(const FlowCurve& curve, double modulus_dt, double trial_stress, double guess);
 
-/// Particles whose stress is advanced together, a vector of them at a time: an array for each entry of each field. Make it with {}: what
-/// fills the last vector beyond `size` is computed, though not used.
+/// Particles whose stress is advanced together, a vector of them at a time: an array for each entry of each field. Make
+/// it with {}: what fills the last vector beyond `size` is computed, though not used.
 template <int Dim>
 struct StressBlock {
   static constexpr std::size_t capacity = 32;
   using Field = std::array<double, capacity>;
 
-  std::size_t size = 0;  ///< particles in it
+  std::size_t size = 0;                                    ///< particles in it
   alignas(64) std::array<Field, Dim * Dim> bare_gradient;  ///< sum V_j (v_j - v_i) (x) grad_w_ij, row-major [1/s]
   std::array<Field, Dim * Dim> correction;                 ///< L, row-major (core/sph/gradient_correction.h)
   std::array<Field, Dim * Dim> gradient;                   ///< of the velocity, bare_gradient L [1/s]
@@ -61,12 +62,13 @@ struct StressBlock {
 template <int Dim>
 void correct_gradients(StressBlock<Dim>& block);
 
-/// Stress and viscosity after `dt` [s] with the law above, but with a relaxed stress (docs/decisions/0003-relaxed-stress.md): a Maxwell
-/// element in which a spring of shear modulus G is in series with the dashpot of the flow curve,
+/// Stress and viscosity after `dt` [s] with the law above, but with a relaxed stress
+/// (docs/decisions/0003-relaxed-stress.md): a Maxwell element in which a spring of shear modulus G is in series with
+/// the dashpot of the flow curve,
 ///   DS/Dt = G (D - S/eta),  eta = tau(y)/y at the dashpot's own rate y,  D the deviatoric strain rate,
-/// DS/Dt following the material's rotation (Hughes & Winget 1980). Backward Euler in the dashpot, so any viscosity is stable at the
-/// step that the shear wave sqrt(G/rho) allows; in steady flow |S| = tau(gdot), the SMD law itself. A particle's bytes depend neither
-/// on its company nor on the machine's instructions.
+/// DS/Dt following the material's rotation (Hughes & Winget 1980). Backward Euler in the dashpot, so any viscosity is
+/// stable at the step that the shear wave sqrt(G/rho) allows; in steady flow |S| = tau(gdot), the SMD law itself. A
+/// particle's bytes depend neither on its company nor on the machine's instructions.
 template <int Dim>
 void relax_stresses(double dt, StressBlock<Dim>& block);
 
@@ -80,7 +82,7 @@ void correct_stresses(StressBlock<Dim>& block);
 
 /// relax_stresses for one particle.
 template <int Dim>
-StressState<Dim> relaxed_stress(const FlowCurve& curve, double shear_modulus, double dt, const Mat<Dim>& velocity_gradient,
-                                const StressState<Dim>& before);
+StressState<Dim> relaxed_stress(const FlowCurve& curve, double shear_modulus, double dt,
+                                const Mat<Dim>& velocity_gradient, const StressState<Dim>& before);
 
 }  // namespace smelt
