@@ -41,7 +41,7 @@ struct NeighbourLists {
   std::vector<Place> places;
   std::vector<std::int32_t> names;  ///< what places in the order of the search stand for; empty: themselves
   std::size_t longest = 0;          ///< row, in neighbours
-  int row_multiple = 1;
+  int row_multiple = 1;  ///< a power of two, up to `step`
 
   std::size_t size() const { return places.size(); }
   std::size_t n_bytes() const;
@@ -66,9 +66,9 @@ struct NeighbourLists {
     }
     const auto n = static_cast<std::size_t>(end - buffer);
     for (std::size_t k = 0; k < n && !names.empty(); ++k) buffer[k] = names[static_cast<std::size_t>(buffer[k])];
+    std::fill_n(end, step, static_cast<std::int32_t>(i));  // no fewer than are wanted, and of a known number
     const auto multiple = static_cast<std::size_t>(row_multiple);
-    const std::size_t n_padded = (n + multiple - 1) / multiple * multiple;
-    std::fill(end, buffer + n_padded, static_cast<std::int32_t>(i));
+    const std::size_t n_padded = (n + multiple - 1) & ~(multiple - 1);
     return {{buffer, n}, {buffer, n_padded}};
   }
 

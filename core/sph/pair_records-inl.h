@@ -9,9 +9,8 @@
 #include "core/sph/pair_kernels-inl.h"
 #include "core/sph/pair_sums.h"
 
+#include <algorithm>
 #include <hwy/highway.h>
-
-#include <span>
 #include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
@@ -41,7 +40,8 @@ HWY_INLINE void load_four_fields(const float* const (&at)[n_lanes], int first, S
   Simd<float> rows[4];
   for (int k = 0; k < 4; ++k) {
     if constexpr (n_lanes == 16)
-      rows[k] = hn::Combine(d, hn::Combine(half, block(k + 12), block(k + 8)), hn::Combine(half, block(k + 4), block(k)));
+      rows[k] =
+          hn::Combine(d, hn::Combine(half, block(k + 12), block(k + 8)), hn::Combine(half, block(k + 4), block(k)));
     else
       rows[k] = hn::Combine(d, block(k + 4), block(k));
   }
@@ -63,7 +63,8 @@ HWY_INLINE void load_eight_fields(const float* const (&at)[n_lanes], int first, 
   }
   transpose_blocks(rows[0], rows[1], rows[2], rows[3]);
   transpose_blocks(rows[4], rows[5], rows[6], rows[7]);
-  // Blocks of row k: field k of neighbours 0 to 3, field k + 4 of them, and so on for 8 to 11; of row k + 4, of 4 to 7 and 12 to 15.
+  // Blocks of row k: field k of neighbours 0 to 3, field k + 4 of them, and so on for 8 to 11; of row k + 4, of 4 to 7
+  // and 12 to 15.
   for (int k = 0; k < 4; ++k) {
     fields[k] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(rows[k + 4]), rows[k]);
     fields[k + 4] = hn::OddEvenBlocks(rows[k + 4], hn::SwapAdjacentBlocks(rows[k]));
@@ -72,18 +73,21 @@ HWY_INLINE void load_eight_fields(const float* const (&at)[n_lanes], int first, 
 
 /// Fields [first, first + n) of the records of one vector of neighbours: fields[f] holds field first + f of each.
 template <int first, int n>
-HWY_INLINE void load_fields(const float* records, int stride, const std::int32_t* index, Simd<float> (&fields)[padded_fields(n)]) {
+HWY_INLINE void load_fields(const float* records, int stride, const std::int32_t* index,
+                            Simd<float> (&fields)[padded_fields(n)]) {
   static_assert(first % 4 == 0);
   constexpr int n_loaded = padded_fields(n);
   const float* at[lanes<float>];
-  for (int lane = 0; lane < lanes<float>; ++lane) at[lane] = records + static_cast<std::ptrdiff_t>(index[lane]) * stride;
+  for (int lane = 0; lane < lanes<float>; ++lane)
+    at[lane] = records + static_cast<std::ptrdiff_t>(index[lane]) * stride;
   for (int f = 0; f + 8 <= n_loaded; f += 8) load_eight_fields(at, first + f, fields + f);
   if constexpr (n_loaded % 8 != 0) load_four_fields(at, first + n_loaded - 4, fields + n_loaded - 4);
 }
 
 /// Double precision serves studies, not speed: plain gathers.
 template <int first, int n>
-HWY_INLINE void load_fields(const double* records, int stride, const std::int32_t* index, Simd<double> (&fields)[padded_fields(n)]) {
+HWY_INLINE void load_fields(const double* records, int stride, const std::int32_t* index,
+                            Simd<double> (&fields)[padded_fields(n)]) {
   const Tag<double> d;
   const Tag<std::int64_t> di;
   const auto indices = hn::PromoteTo(di, hn::LoadU(hn::Rebind<std::int32_t, decltype(di)>(), index));
@@ -105,27 +109,79 @@ HWY_INLINE Simd<double> load_field(const double* records, int stride, const std:
   return fields[0];
 }
 
-/// Adds up what `add(index, sums)` adds to `sums`, vectors of lanes, for every vector of neighbours in `row`. Lane k of a group of pair_lanes is
-/// added to lane k + pair_lanes/2, then these halves are summed, whatever the length of a vector: the same bytes on every machine.
-template <int n_sums, typename Real, typename Add>
-HWY_INLINE void sum_row(std::span<const std::int32_t> row, Real (&total)[n_sums], const Add& add) {
-  const Tag<Real> d;
-  const hn::CappedTag<Real, pair_lanes<Real> / 2> half;
-  constexpr std::size_t n_parts = pair_lanes<Real> / lanes<Real>;
-  static_assert(n_parts == 1 || n_parts == 2);
-  hn::Vec<decltype(half)> folded[n_sums];
-  for (std::size_t part = 0; part < n_parts; ++part) {
-    Simd<Real> sums[n_sums];
-    for (auto& sum : sums) sum = hn::Zero(d);
-    for (std::size_t k = part * lanes<Real>; k < row.size(); k += pair_lanes<Real>) add(row.data() + k, sums);
-    for (int s = 0; s < n_sums; ++s) {
-      if constexpr (n_parts == 1)
-        folded[s] = hn::Add(hn::LowerHalf(half, sums[s]), hn::UpperHalf(half, sums[s]));
-      else
-        folded[s] = part == 0 ? sums[s] : hn::Add(folded[s], sums[s]);
-    }
+/// The sums over the lanes of as many vectors as each has lanes: adding interleaved halves takes a third of the
+/// shuffles of one sum after another.
+template <typename D>
+HWY_INLINE hn::Vec<D> sum_lanes(D d, const hn::Vec<D>* v) {
+  constexpr int n = static_cast<int>(hn::MaxLanes(D()));
+  using Real = hn::TFromD<D>;
+  static_assert(n * sizeof(Real) == 32);
+  const auto add_pairs = [&](hn::Vec<D> a, hn::Vec<D> b)
+                             HWY_ATTR { return hn::Add(hn::InterleaveLower(d, a, b), hn::InterleaveUpper(d, a, b)); };
+  const auto add_halves = [&](hn::Vec<D> a, hn::Vec<D> b) HWY_ATTR {
+    return hn::Add(hn::ConcatLowerLower(d, b, a), hn::ConcatUpperUpper(d, b, a));
+  };
+  if constexpr (n == 4) {
+    return add_halves(add_pairs(v[0], v[1]), add_pairs(v[2], v[3]));
+  } else {
+    const hn::Repartition<double, D> wide;
+    const auto add_fours = [&](const hn::Vec<D>* four) HWY_ATTR {
+      const auto low = hn::BitCast(wide, add_pairs(four[0], four[1])),
+                 high = hn::BitCast(wide, add_pairs(four[2], four[3]));
+      return hn::Add(hn::BitCast(d, hn::InterleaveLower(wide, low, high)),
+                     hn::BitCast(d, hn::InterleaveUpper(wide, low, high)));
+    };
+    return add_halves(add_fours(v), add_fours(v + 4));
   }
-  for (int s = 0; s < n_sums; ++s) total[s] = hn::GetLane(hn::SumOfLanes(half, folded[s]));
+}
+
+template <typename Real>
+using HalfTag = hn::CappedTag<Real, pair_lanes<Real> / 2>;
+
+/// Sums over a row in vectors of pair_lanes, then lane k of each sum added to lane k + pair_lanes/2. Unrolled: there
+/// are registers for most sums.
+template <int n_sums, typename Real, typename Add>
+HWY_INLINE void fold_row_of_whole_groups(const NeighbourLists::Row& row, hn::Vec<HalfTag<Real>>* folded,
+                                         const Add& add) {
+  const HalfTag<Real> half;
+  Simd<Real> sums[n_sums];
+#pragma GCC unroll 32
+  for (int s = 0; s < n_sums; ++s) sums[s] = hn::Zero(Tag<Real>());
+  for (std::size_t k = 0; k < row.neighbours.size(); k += pair_lanes<Real>) add(row.padded.data() + k, sums);
+#pragma GCC unroll 32
+  for (int s = 0; s < n_sums; ++s) folded[s] = hn::Add(hn::LowerHalf(half, sums[s]), hn::UpperHalf(half, sums[s]));
+}
+
+/// The same in vectors of half as many lanes. Unrolled it would take a fifth longer: there are half as many registers.
+template <int n_sums, typename Real, typename Add>
+HWY_INLINE void fold_row_of_half_groups(const NeighbourLists::Row& row, hn::Vec<HalfTag<Real>>* folded,
+                                        const Add& add) {
+  const HalfTag<Real> half;
+  for (std::size_t part = 0; part < 2; ++part) {
+    Simd<Real> sums[n_sums];
+    for (auto& sum : sums) sum = hn::Zero(half);
+    for (std::size_t k = part * lanes<Real>; k < row.neighbours.size(); k += pair_lanes<Real>)
+      add(row.padded.data() + k, sums);
+    for (int s = 0; s < n_sums; ++s) folded[s] = part == 0 ? sums[s] : hn::Add(folded[s], sums[s]);
+  }
+}
+
+/// Adds up what `add(index, sums)` adds to `sums`, vectors of lanes, for every vector of neighbours in `row`; vectors
+/// of padding alone are left out, as they would add nothing. The same bytes on every machine: sums are folded to half
+/// of pair_lanes, then these are summed, whatever the length of a vector.
+template <int n_sums, typename Real, typename Add>
+HWY_INLINE void sum_row(const NeighbourLists::Row& row, Real (&total)[n_sums], const Add& add) {
+  constexpr int n_half = pair_lanes<Real> / 2, n_padded = (n_sums + n_half - 1) / n_half * n_half;
+  const HalfTag<Real> half;
+  hn::Vec<HalfTag<Real>> folded[n_padded];
+  for (int s = n_sums; s < n_padded; ++s) folded[s] = hn::Zero(half);
+  if constexpr (lanes<Real> == pair_lanes<Real>)
+    fold_row_of_whole_groups<n_sums, Real>(row, folded, add);
+  else
+    fold_row_of_half_groups<n_sums, Real>(row, folded, add);
+  Real padded[n_padded];
+  for (int s = 0; s < n_padded; s += n_half) hn::StoreU(sum_lanes(half, folded + s), half, padded + s);
+  std::copy_n(padded, n_sums, total);
 }
 
 /// What every pair needs of its neighbours.
@@ -157,9 +213,12 @@ HWY_INLINE Simd<Real> dot(const Simd<Real> (&a)[Dim], const Simd<Real> (&b)[Dim]
 template <int Dim, typename Real, typename Run>
 void with_kernel(KernelType type, const Run& run) {
   switch (type) {
-    case KernelType::cubic_spline: return run(std::type_identity<CubicSpline<Dim, Real>>{});
-    case KernelType::quintic_spline: return run(std::type_identity<QuinticSpline<Dim, Real>>{});
-    case KernelType::quadratic: return run(std::type_identity<Quadratic<Dim, Real>>{});
+    case KernelType::cubic_spline:
+      return run(std::type_identity<CubicSpline<Dim, Real>>{});
+    case KernelType::quintic_spline:
+      return run(std::type_identity<QuinticSpline<Dim, Real>>{});
+    case KernelType::quadratic:
+      return run(std::type_identity<Quadratic<Dim, Real>>{});
   }
 }
 

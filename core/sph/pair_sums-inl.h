@@ -45,7 +45,7 @@ HWY_INLINE void add_moments(const Neighbours<Dim, Real>& pair, Simd<Real> weight
 
 /// What the stress of particle `i` sees where some neighbour is too thin for it to see in full.
 template <typename PairKernel, int Dim, typename Real>
-SightedSums<Dim, Real> sighted_sums(const PairFields<Dim, Real>& fields, const PairKernel& kernel, std::span<const std::int32_t> row, std::size_t i) {
+SightedSums<Dim, Real> sighted_sums(const PairFields<Dim, Real>& fields, const PairKernel& kernel, const NeighbourLists::Row& row, std::size_t i) {
   const Tag<Real> d;
   using Fields = PairFields<Dim, Real>;
   const Real* records = fields.records.data();
@@ -131,7 +131,7 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
       }
     };
     Real total[At::n_sums];
-    const auto row = lists.read(i, buffer.data()).padded;
+    const NeighbourLists::Row row = lists.read(i, buffer.data());
     sum_row(row, total, add_pairs);
 
     RateSums<Dim, Real>& out = sums[i - begin];
@@ -235,7 +235,7 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
       }
     };
     Real total[n_sums];
-    sum_row(lists.read(i, buffer.data()).padded, total, add_pairs);
+    sum_row(lists.read(i, buffer.data()), total, add_pairs);
     for (int a = 0; a < Dim; ++a) {
       acceleration[i - begin][a] = total[a];
       if constexpr (with_stress)
@@ -277,7 +277,7 @@ void gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& l
       sum[Dim] = hn::MulAdd(weight, v_x, sum[Dim]);
     };
     Real total[Dim + 1];  // the force and the energy
-    sum_row(lists.read(i, buffer.data()).padded, total, add_pairs);
+    sum_row(lists.read(i, buffer.data()), total, add_pairs);
     std::copy_n(total, Dim, acceleration[i - begin].begin());
     energy_rate[i - begin] = Real(0.5) * total[Dim];
   }
@@ -304,7 +304,7 @@ void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lis
       sum[1] = hn::Add(volume_w, sum[1]);
     };
     Real total[2];
-    sum_row(row.padded, total, add_pairs);
+    sum_row(row, total, add_pairs);
     const Real self = record_i[Fields::volume_at] * hn::GetLane(kernel.value(hn::Zero(d)));
     sums[i - begin].mass = total[0] + record_i[Fields::density_at] * self;
     sums[i - begin].volume = total[1] + self;

@@ -42,7 +42,7 @@ void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const Neighbour
       }
     };
     Real total[Dim + n_symmetric<Dim>];
-    sum_row(lists.read(i, buffer.data()).padded, total, add_pairs);
+    sum_row(lists.read(i, buffer.data()), total, add_pairs);
     std::copy_n(total, Dim, sums[i - begin].gradient.begin());
     std::copy_n(total + Dim, n_symmetric<Dim>, sums[i - begin].moment.begin());
   }
@@ -76,7 +76,7 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
       sum[0] = hn::NegMulAdd(weight, unexplained, sum[0]);
     };
     Real total[1];
-    sum_row(lists.read(i, buffer.data()).padded, total, add_pairs);
+    sum_row(lists.read(i, buffer.data()), total, add_pairs);
     sums[i - begin] = 2 * total[0];
   }
 }
