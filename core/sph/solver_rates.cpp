@@ -27,6 +27,16 @@ Mat<Dim> unpack_gradient(const std::array<Real, Dim * Dim>& row_major) {
   return gradient;
 }
 
+/// How much of what the bare divergence misses the corrected one adds, by the position moment: all of it where neighbours are missing, nothing
+/// where the support is full (its trace over Dim is 1 in the bulk, some 0.65 at a flat free surface). There the bare rate is the derivative
+/// of a sum over neighbours, so that a density follows them wherever they go; the corrected one would let them crowd. What walls
+/// miss, mirrored, stays (docs/decisions/0015-thin-flows.md, 0008-walls.md).
+template <int Dim>
+double missing_support(const Mat<Dim>& position_moment) {
+  constexpr double surface = 0.85, bulk = 0.95;
+  return std::clamp((bulk - position_moment.trace() / Dim) / (bulk - surface), 0.0, 1.0);
+}
+
 }  // namespace
 
 /// Where density is a sum, it follows from the positions alone.
@@ -181,10 +191,10 @@ void Solver<Dim, Real>::add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<
 template <int Dim, typename Real>
 void Solver<Dim, Real>::collect_stress(std::size_t i, const Mat<Dim>& correction, RateSums<Dim, Real>& rate,
                                        const SightedSums<Dim, Real>& sighted, StressBlock<Dim>& stresses) const {
-  // What the bare divergence misses where neighbours are missing; that of the walls, mirrored, stays (docs/decisions/0008-walls.md).
   if (parameters_.corrected_divergence) {
     const Mat<Dim> bare = unpack_gradient<Dim, Real>(rate.velocity_moment);
-    rate.density_rate -= static_cast<Real>(particles_.density[i] * ((bare * correction).trace() - bare.trace()));
+    const double missed = (bare * correction).trace() - bare.trace();
+    rate.density_rate -= static_cast<Real>(particles_.density[i] * missing_support<Dim>(unpack<Dim, Real>(rate.position_moment)) * missed);
   }
   const std::size_t k = stresses.size++;
   const bool sees_less = terms_.pair.sight && sighted.position_moment != rate.position_moment;

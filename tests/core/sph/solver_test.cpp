@@ -359,25 +359,27 @@ double density_error_in_free_fall() {
 // Water at rest has a pressure gradient of rho g; water that falls has none.
 TEST(Solver, DensityDoesNotDiffuseInFreeFall) { EXPECT_LT(density_error_in_free_fall(), 1e-9); }
 
-/// Largest |d rho/dt| / (rho strain rate) of a disc, rim included, that is stretched along x and pressed along y at one rate.
-double density_rate_in_pure_strain(bool corrected) {
-  constexpr double rate = 2.0, dt = 1e-7;
-  Particles<2> p = make_ball<2>(0.4, 1000.0, 0.1);
+/// Largest |d rho/dt| / (rho strain rate) in the rim of a disc that is stretched along x and pressed along y at one rate.
+double density_rate_of_rim(bool corrected) {
+  constexpr double rate = 2.0, dt = 1e-7, radius = 0.4, rim = 0.04;
+  Particles<2> p = make_ball<2>(radius, 1000.0, 0.1);
   for (std::size_t i = 0; i < p.size(); ++i) p.velocity[i] = rate * Vec<2>(p.position[i][0], -p.position[i][1]);
   auto parameters = make_parameters<2>();
   parameters.corrected_divergence = corrected;
   Solver<2, double> solver(parameters, {stiff_material()}, {}, std::move(p));
   solver.prepare();
   solver.step(dt, 0.0);
+  const auto& after = solver.particles();
   double largest = 0.0;
-  for (const double rho : solver.particles().density) largest = std::max(largest, std::abs(rho / 1000.0 - 1.0) / (rate * dt));
+  for (std::size_t i = 0; i < after.size(); ++i)
+    if (after.position[i].norm() > radius - rim) largest = std::max(largest, std::abs(after.density[i] / 1000.0 - 1.0) / (rate * dt));
   return largest;
 }
 
 // A strain that keeps volumes keeps the density: without the correction only where no neighbours are missing.
 TEST(Solver, CorrectedDivergenceKeepsTheDensityOfAFreeSurface) {
-  EXPECT_LT(density_rate_in_pure_strain(true), 1e-4);
-  EXPECT_GT(density_rate_in_pure_strain(false), 0.1);
+  EXPECT_LT(density_rate_of_rim(true), 1e-4);
+  EXPECT_GT(density_rate_of_rim(false), 0.1);
 }
 
 TEST(Solver, CorrectedDivergenceNeedsAStressAndTheContinuityEquation) {
