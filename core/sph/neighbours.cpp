@@ -203,7 +203,8 @@ template <int Dim>
 void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, double cell_size, int row_multiple,
                            NeighbourLists& lists) {
   CHECK_GE(cell_size, radius);
-  CHECK(std::has_single_bit(static_cast<unsigned>(row_multiple)) && static_cast<std::size_t>(row_multiple) <= NeighbourLists::step);
+  CHECK(std::has_single_bit(static_cast<unsigned>(row_multiple)) &&
+        static_cast<std::size_t>(row_multiple) <= NeighbourLists::step);
   const CellTable table(position, make_cell_frame<Dim>(position, cell_size));
   const auto& cells = table.cells();
   constexpr std::size_t cells_per_block = NeighbourLists::cells_per_block;

@@ -41,7 +41,7 @@ struct NeighbourLists {
   std::vector<Place> places;
   std::vector<std::int32_t> names;  ///< what places in the order of the search stand for; empty: themselves
   std::size_t longest = 0;          ///< row, in neighbours
-  int row_multiple = 1;  ///< a power of two, up to `step`
+  int row_multiple = 1;             ///< a power of two, up to `step`
 
   std::size_t size() const { return places.size(); }
   std::size_t n_bytes() const;

@@ -27,10 +27,11 @@ Mat<Dim> unpack_gradient(const std::array<Real, Dim * Dim>& row_major) {
   return gradient;
 }
 
-/// How much of what the bare divergence misses the corrected one adds, by the position moment: all of it where neighbours are missing, nothing
-/// where the support is full (its trace over Dim is 1 in the bulk, some 0.65 at a flat free surface). There the bare rate is the derivative
-/// of a sum over neighbours, so that a density follows them wherever they go; the corrected one would let them crowd. What walls
-/// miss, mirrored, stays (docs/decisions/0015-thin-flows.md, 0008-walls.md).
+/// How much of what the bare divergence misses the corrected one adds, by the position moment: all of it where
+/// neighbours are missing, nothing where the support is full (its trace over Dim is 1 in the bulk, some 0.65 at a flat
+/// free surface). There the bare rate is the derivative of a sum over neighbours, so that a density follows them
+/// wherever they go; the corrected one would let them crowd. What walls miss, mirrored, stays
+/// (docs/decisions/0015-thin-flows.md, 0008-walls.md).
 template <int Dim>
 double missing_support(const Mat<Dim>& position_moment) {
   constexpr double surface = 0.9, bulk = 1.0;
@@ -194,7 +195,8 @@ void Solver<Dim, Real>::collect_stress(std::size_t i, const Mat<Dim>& correction
   if (parameters_.corrected_divergence) {
     const Mat<Dim> bare = unpack_gradient<Dim, Real>(rate.velocity_moment);
     const double missed = (bare * correction).trace() - bare.trace();
-    rate.density_rate -= static_cast<Real>(particles_.density[i] * missing_support<Dim>(unpack<Dim, Real>(rate.position_moment)) * missed);
+    rate.density_rate -= static_cast<Real>(particles_.density[i] *
+                                           missing_support<Dim>(unpack<Dim, Real>(rate.position_moment)) * missed);
   }
   const std::size_t k = stresses.size++;
   const bool sees_less = terms_.pair.sight && sighted.position_moment != rate.position_moment;

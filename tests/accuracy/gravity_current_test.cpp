@@ -51,10 +51,10 @@ TEST(GravityCurrent, ViscousDamBreakIsLavaBenchmark1) {
                 .order = i > 0 ? std::optional(convergence_order(spacings, errors)) : std::nullopt});
 }
 
-// ------------------------------------------------------------------------------------------------------------- a thin layer
+// ------------------------------------------------------------------------------------------------------ a thin layer
 
-/// How far the top row of a jittered layer of `n_rows`, 0.5 m deep, has sunk after 10 s down a slope of 0.4 on which nothing slips, 1 m/s
-/// fast at its surface, in its height.
+/// How far the top row of a jittered layer of `n_rows`, 0.5 m deep, has sunk after 10 s down a slope of 0.4 on which
+/// nothing slips, 1 m/s fast at its surface, in its height.
 double sink(int n_rows) {
   constexpr double deep = 0.5, density = 1000.0, sound_speed = 40.0;
   const double spacing = deep / n_rows, slope = std::atan(0.4);
@@ -80,8 +80,8 @@ double sink(int n_rows) {
   return 1.0 - std::accumulate(heights.end() - 8, heights.end(), 0.0) / 8.0 / (deep - 0.5 * spacing);
 }
 
-// Where the corrected divergence alone made the density, nothing noticed particles that crowd as they pass one another: layers sank by a
-// quarter in 10 s (docs/decisions/0015-thin-flows.md).
+// Where the corrected divergence alone made the density, nothing noticed particles that crowd as they pass one another:
+// layers sank by a quarter in 10 s (docs/decisions/0015-thin-flows.md).
 TEST(GravityCurrent, LayersKeepTheirDepth) {
   for (const int n_rows : {4, 8})
     report_row({.problem = "viscous layer on a slope of 0.4; corrected divergence; 10 s",

@@ -359,7 +359,8 @@ double density_error_in_free_fall() {
 // Water at rest has a pressure gradient of rho g; water that falls has none.
 TEST(Solver, DensityDoesNotDiffuseInFreeFall) { EXPECT_LT(density_error_in_free_fall(), 1e-9); }
 
-/// Largest |d rho/dt| / (rho strain rate) in the rim of a disc that is stretched along x and pressed along y at one rate.
+/// Largest |d rho/dt| / (rho strain rate) in the rim of a disc that is stretched along x and pressed along y at one
+/// rate.
 double density_rate_of_rim(bool corrected) {
   constexpr double rate = 2.0, dt = 1e-7, radius = 0.4, rim = 0.04;
   Particles<2> p = make_ball<2>(radius, 1000.0, 0.1);
@@ -372,11 +373,13 @@ double density_rate_of_rim(bool corrected) {
   const auto& after = solver.particles();
   double largest = 0.0;
   for (std::size_t i = 0; i < after.size(); ++i)
-    if (after.position[i].norm() > radius - rim) largest = std::max(largest, std::abs(after.density[i] / 1000.0 - 1.0) / (rate * dt));
+    if (after.position[i].norm() > radius - rim)
+      largest = std::max(largest, std::abs(after.density[i] / 1000.0 - 1.0) / (rate * dt));
   return largest;
 }
 
-// A strain that keeps volumes keeps the density: without the correction only where no neighbours are missing.
+// A strain that keeps volumes keeps the density where neighbours are missing only with the correction. Elsewhere the
+// bare rate is meant.
 TEST(Solver, CorrectedDivergenceKeepsTheDensityOfAFreeSurface) {
   EXPECT_LT(density_rate_of_rim(true), 1e-4);
   EXPECT_GT(density_rate_of_rim(false), 0.1);
