@@ -141,6 +141,19 @@ std::uint64_t rank_cell(std::uint64_t key) {
   return (rank << y_bits) | (y & y_mask);
 }
 
+/// Sets `target` to `source` without keeping the room of the most it ever held: over many searches every block would
+/// come to hold that. Whole kilobytes, so that what one block gives back another can take.
+template <typename T>
+void replace(std::vector<T>& target, const std::vector<T>& source) {
+  constexpr std::size_t step = 1024 / sizeof(T);
+  const std::size_t room = (source.size() + step - 1) / step * step;
+  if (target.capacity() != room) {
+    target = std::vector<T>();
+    target.reserve(room);
+  }
+  target.assign(source.begin(), source.end());
+}
+
 /// Appends the row of particle `i` to `bytes`; returns how many neighbours it has.
 template <int Dim>
 std::size_t append_row(std::span<const Vec<Dim>> position, double radius2, const std::vector<Run>& runs, std::int32_t i,
@@ -217,24 +230,26 @@ void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, do
       lists.blocks.size(),
       [&](std::size_t b, std::size_t) {
         NeighbourLists::Block& block = lists.blocks[b];
-        block.run_begin.clear();
+        thread_local std::vector<std::int32_t> run_begin;
         thread_local std::vector<std::uint8_t> bytes;
+        run_begin.clear();
         bytes.clear();
         for (std::size_t k = 0; k < cells_per_block; ++k) {
-          block.first_run[k] = static_cast<std::uint32_t>(block.run_begin.size());
+          block.first_run[k] = static_cast<std::uint32_t>(run_begin.size());
           const std::size_t c = b * cells_per_block + k;
           if (c >= cells.size()) continue;
           const std::vector<Run> runs = split_runs(find_runs<Dim>(table, cells[c].key));
-          for (const Run& run : runs) block.run_begin.push_back(run.begin);
+          for (const Run& run : runs) run_begin.push_back(run.begin);
           for (std::int32_t i = cells[c].begin; i < cells[c].end; ++i) {
             CHECK_LE(bytes.size(), std::numeric_limits<std::uint32_t>::max());
             lists.places[i] = {static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(bytes.size())};
             longest[b] = std::max(longest[b], append_row<Dim>(position, radius * radius, runs, i, bytes));
           }
         }
-        block.first_run.back() = static_cast<std::uint32_t>(block.run_begin.size());
+        block.first_run.back() = static_cast<std::uint32_t>(run_begin.size());
         bytes.resize(bytes.size() + NeighbourLists::step);
-        block.bytes.assign(bytes.begin(), bytes.end());
+        replace(block.run_begin, run_begin);
+        replace(block.bytes, bytes);
       },
       1);
   lists.longest = longest.empty() ? 0 : *std::max_element(longest.begin(), longest.end());
@@ -242,7 +257,7 @@ void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, do
 
 std::size_t NeighbourLists::n_bytes() const {
   std::size_t n = places.size() * sizeof(places[0]) + blocks.size() * sizeof(Block) + names.size() * sizeof(names[0]);
-  for (const Block& block : blocks) n += block.run_begin.size() * sizeof(block.run_begin[0]) + block.bytes.size();
+  for (const Block& block : blocks) n += block.run_begin.capacity() * sizeof(block.run_begin[0]) + block.bytes.capacity();
   return n;
 }
 

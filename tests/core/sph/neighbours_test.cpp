@@ -57,6 +57,22 @@ TEST(Neighbours, CrowdsAreSeenWhole) {
   expect_all_pairs<3>(points, 0.31);
 }
 
+/// Over the searches of a run lists come to hold what they need, not the most that each block ever did.
+TEST(Neighbours, ListsGiveBackWhatTheyNoLongerNeed) {
+  const auto points = random_points<3>(4000, 8);
+  std::vector<std::int32_t> id(points.size());
+  std::iota(id.begin(), id.end(), 0);
+  std::vector<Vec3> sorted;
+  for (const auto i : compute_cell_order<3>(points, id, 0.2)) sorted.push_back(points[i]);
+  NeighbourLists reused, fresh;
+  build_neighbour_lists<3>(sorted, 0.2, 0.2, 8, reused);
+  const std::size_t before = reused.n_bytes();
+  build_neighbour_lists<3>(sorted, 0.1, 0.2, 8, reused);
+  build_neighbour_lists<3>(sorted, 0.1, 0.2, 8, fresh);
+  EXPECT_LT(reused.n_bytes(), before);
+  EXPECT_EQ(reused.n_bytes(), fresh.n_bytes());
+}
+
 TEST(Neighbours, FarClustersNeedNoDenseGrid) {
   auto points = random_points<3>(100, 4);
   for (int k = 0; k < 50; ++k) points[k] += Vec3(1e5, -1e5, 1e5);
