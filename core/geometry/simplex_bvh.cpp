@@ -234,6 +234,18 @@ double SimplexBvh<Dim>::distance(const Vec<Dim>& point, double limit) const {
   return found ? found->distance : limit;
 }
 
+/// Replaces `first` by the contact with simplex `k` where that comes before it.
+template <int Dim>
+template <typename Query>
+void SimplexBvh<Dim>::improve(std::optional<FirstContact<Dim>>& first, std::uint32_t k, Query& query, const Vec<Dim>& centre,
+                              const Vec<Dim>& displacement, double radius) const {
+  const auto contact = sweep_sphere<Dim>(centre, displacement, radius, simplices_[k], first ? first->contact.time : 1.0);
+  if (!contact) return;
+  if (first && !(contact->time < first->contact.time) && !(contact->time == first->contact.time && k < first->simplex)) return;
+  first = {k, *contact};
+  query.limit = static_cast<float>(contact->time);
+}
+
 template <int Dim>
 std::optional<FirstContact<Dim>> SimplexBvh<Dim>::first_contact(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius,
                                                                 std::uint32_t except) const {
@@ -241,14 +253,32 @@ std::optional<FirstContact<Dim>> SimplexBvh<Dim>::first_contact(const Vec<Dim>& 
   if (nodes_.empty() || displacement.isZero(0.0)) return first;
   SweepQuery query(*this, centre, displacement, radius);
   visit(0, query, [&](std::uint32_t k) {
-    if (k == except) return;
-    const auto contact = sweep_sphere<Dim>(centre, displacement, radius, simplices_[k], first ? first->contact.time : 1.0);
-    if (!contact) return;
-    if (first && !(contact->time < first->contact.time) && !(contact->time == first->contact.time && k < first->simplex)) return;
-    first = {k, *contact};
-    query.limit = static_cast<float>(contact->time);
+    if (k != except) improve(first, k, query, centre, displacement, radius);
   });
   return first;
+}
+
+template <int Dim>
+typename SimplexBvh<Dim>::Visits SimplexBvh<Dim>::count_visits(const Vec<Dim>& centre, const Vec<Dim>& displacement,
+                                                               double radius) const {
+  struct CountingQuery : SweepQuery {
+    using SweepQuery::SweepQuery;
+    mutable std::size_t n_nodes = 0;
+    Lanes entry(const Node& node, const Leaf* leaf) const {
+      ++n_nodes;
+      return SweepQuery::entry(node, leaf);
+    }
+  };
+  Visits visits;
+  if (nodes_.empty() || displacement.isZero(0.0)) return visits;
+  std::optional<FirstContact<Dim>> first;
+  CountingQuery query(*this, centre, displacement, radius);
+  visit(0, query, [&](std::uint32_t k) {
+    ++visits.simplices;
+    improve(first, k, query, centre, displacement, radius);
+  });
+  visits.nodes = query.n_nodes;
+  return visits;
 }
 
 template class SimplexBvh<1>;

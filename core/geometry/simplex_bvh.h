@@ -49,6 +49,13 @@ class SimplexBvh {
   std::optional<FirstContact<Dim>> first_contact(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius,
                                                  std::uint32_t except = none) const;
 
+  /// What first_contact() costs, in a measure that no cache blurs.
+  struct Visits {
+    std::size_t nodes = 0;      ///< of eight boxes each
+    std::size_t simplices = 0;  ///< tried in double precision
+  };
+  Visits count_visits(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius) const;
+
  private:
   static constexpr std::uint32_t width = 8;
   using Lanes = Eigen::Array<float, width, 1>;
@@ -69,6 +76,9 @@ class SimplexBvh {
   struct SweepQuery;
   template <typename Query, typename Meet>
   void visit(std::uint32_t node, Query& query, const Meet& meet) const;
+  template <typename Query>
+  void improve(std::optional<FirstContact<Dim>>& first, std::uint32_t k, Query& query, const Vec<Dim>& centre,
+               const Vec<Dim>& displacement, double radius) const;
 
   std::vector<Simplex<Dim>> simplices_;
   std::vector<Node> nodes_;  ///< the root first

@@ -169,6 +169,45 @@ void test_queries(std::size_t n, const Vec<Dim>& place, int& n_hits) {
   }
 }
 
+/// Bumpy ground of n x n cells of two triangles over [0, 1]^2.
+std::vector<Simplex<3>> bumpy_ground(int n) {
+  const auto at = [&](int i, int k) {
+    const double x = static_cast<double>(i) / n, z = static_cast<double>(k) / n;
+    return Vec3(x, 0.01 * std::sin(40.0 * x) * std::cos(30.0 * z), z);
+  };
+  std::vector<Simplex<3>> facets;
+  for (int i = 0; i < n; ++i)
+    for (int k = 0; k < n; ++k) {
+      facets.push_back({at(i, k), at(i, k + 1), at(i + 1, k + 1)});
+      facets.push_back({at(i, k), at(i + 1, k + 1), at(i + 1, k)});
+    }
+  return facets;
+}
+
+/// Mean visits of spheres that fall on ground whose triangles are as large as they are, so that each meets as many.
+double mean_nodes_visited(int n_cells) {
+  const SimplexBvh<3> bvh(bumpy_ground(n_cells));
+  const double radius = 0.5 / n_cells;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> inside(0.1, 0.9);
+  double nodes = 0.0;
+  constexpr int n_spheres = 2000;
+  for (int k = 0; k < n_spheres; ++k) {
+    const Vec3 foot(inside(random), 0.0, inside(random));
+    const double ground = bvh.nearest(foot, 1.0)->offset[1];
+    const Vec3 centre = foot + Vec3(0.0, -ground + 2.0 * radius, 0.0);
+    nodes += static_cast<double>(bvh.count_visits(centre, Vec3(radius, -2.0 * radius, 0.0), radius).nodes);
+  }
+  return nodes / n_spheres;
+}
+
+TEST(SimplexBvh, VisitsGrowWithTheLogOfTheTriangles) {
+  // 200 triangles to half a million: 8 of them a node, so that each step, 16 times as many, is a level and a third.
+  const double visits[] = {mean_nodes_visited(10), mean_nodes_visited(40), mean_nodes_visited(160), mean_nodes_visited(500)};
+  for (int k = 0; k < 3; ++k) EXPECT_LT(visits[k + 1] - visits[k], 2.0) << k;
+  EXPECT_LT(visits[3], 12.0);
+}
+
 TEST(SimplexBvh, AnswersAreThoseOfEverySimplexToTheBit) {
   int n_hits = 0;
   for (const std::size_t n : {0, 1, 8, 9, 65, 700, 3000}) {
