@@ -8,16 +8,17 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <span>
 #include <utility>
 
 namespace smelt {
 
 namespace {
 
-/// A material in a layer on an upright face.
+/// A material in a layer on a slope.
 struct Layer {
   const Material& material;
-  double gravity;
+  double gravity;  ///< along the slope [m/s^2]
   double fastest;  ///< beyond a thousand times this it does not matter how fast [m/s]
 
   FlowCurve curve() const {
@@ -44,6 +45,32 @@ struct Layer {
     return thick;
   }
 };
+
+/// The sine of the steepest slope that fluid may run down: all but a hundredth of what faces up (by area) is no
+/// steeper. Where fluid is removed it runs down nothing. 1 where there is no ground.
+double steepest_slope(const Colliders<3>& colliders, std::span<const Outflow<3>> outflows, const Vec3& down) {
+  constexpr double steeper = 0.01;
+  std::vector<std::pair<double, double>> slopes;  // sine and area
+  double area = 0.0;
+  for (const auto& placed : colliders.placed())
+    for (const Simplex<3>& facet : placed.bvh.simplices()) {
+      const Vec3 doubled = (facet[1] - facet[0]).cross(facet[2] - facet[0]);
+      // What lies face down holds nothing; a sheet has no face.
+      const Vec3 normal = placed.begin.rotation * doubled.normalized();
+      if (placed.obstacle.closed && normal.dot(down) > 1e-6) continue;
+      const Vec3 centre = placed.begin.to_world((facet[0] + facet[1] + facet[2]) / 3.0);
+      if (std::any_of(outflows.begin(), outflows.end(), [&](const auto& o) { return o.removes(centre); })) continue;
+      slopes.emplace_back(normal.cross(down).norm(), 0.5 * doubled.norm());
+      area += slopes.back().second;
+    }
+  std::sort(slopes.begin(), slopes.end());
+  double left = steeper * area;
+  while (!slopes.empty() && slopes.back().second < left) {
+    left -= slopes.back().second;
+    slopes.pop_back();
+  }
+  return slopes.empty() ? 1.0 : slopes.back().first;
+}
 
 /// How far `x` can fall until it is on an obstacle, up to `limit` [m].
 double fall_from(const Colliders<3>& colliders, const Vec3& x, const Vec3& down, double limit, double spacing) {
@@ -85,8 +112,8 @@ ExpectedSpeed expect_speed(const SimulationSetup& setup) {
   };
   const auto consider_layer = [&](const Layer& layer, double thickness, double fall) {
     consider(std::hypot(setup.fastest_start, std::sqrt(2.0 * g * fall)), fmt::format("of a fall of {:.3g} m, from where it starts to what is below", fall));
-    consider(layer.speed(thickness),
-             fmt::format("of \"{}\" in a layer {:.3g} m thick down a steep face", layer.material.name, thickness));
+    consider(layer.speed(thickness), fmt::format("of \"{}\" in a layer {:.3g} m thick down the steepest that it meets",
+                                                 layer.material.name, thickness));
     consider(std::sqrt(g * thickness), fmt::format("with which \"{}\" is compressed by its own weight, {:.3g} m deep", layer.material.name, thickness));
   };
   if (setup.particles.size() > 0) {
@@ -96,8 +123,9 @@ ExpectedSpeed expect_speed(const SimulationSetup& setup) {
     for (std::size_t m = 0; m < present.size(); ++m)
       if (present[m]) consider_layer({setup.materials[m], g, free_fall}, height, fall);
   }
+  const double slope = p.emitters.empty() ? 1.0 : steepest_slope(colliders, p.outflows, down);
   for (const Emitter<3>& e : p.emitters) {
-    const Layer layer{setup.materials[e.material], g, free_fall};
+    const Layer layer{setup.materials[e.material], g * slope, free_fall};
     const double thickness = layer.thickness(e.flow_rate / (2.0 * e.radius), std::max(drop, 2.0 * e.radius));
     consider_layer(layer, thickness, fall_from(colliders, e.position, down, drop, setup.spacing));
   }

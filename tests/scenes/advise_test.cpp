@@ -5,9 +5,13 @@
 #include "scenes/scene_reader.h"
 #include "tests/source_folder.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
 #include <numeric>
 
 namespace smelt {
@@ -54,11 +58,26 @@ TEST(Advise, LavaIsMeasuredByHowItCreeps) {
   }
 }
 
-// What a vent 24 m wide pours of a Newtonian fluid, 1200 m^3/s, in a layer as wide: q = rho g d^3/(3 mu), u = rho g d^2/(2 mu).
+// What a vent 24 m wide pours of a Newtonian fluid, 1200 m^3/s, in a layer as wide down a slope: q = w d^3/(3 mu),
+// u = w d^2/(2 mu), with w = rho g sin(slope).
 TEST(Advise, ANewtonianLayerRunsAtItsExactSpeed) {
-  const ExpectedSpeed found = expected_of("lava_volcano.toml", {"material.0.viscosity={ law = \"newtonian\", viscosity_Pa_s = 2e4 }"});
-  const double q = 1200.0 / 24.0, weight = 2600.0 * 9.81, d = std::cbrt(3.0 * 2e4 * q / weight), u = weight * d * d / 4e4;
-  EXPECT_NEAR(found.speed / u, 1.0, 1e-2);
+  const std::filesystem::path folder = std::filesystem::temp_directory_path() / "smelt_advise_slope";
+  std::filesystem::create_directories(folder);
+  for (const double degrees : {15.0, 30.0}) {
+    const double slope = degrees * std::numbers::pi / 180.0, rise = std::tan(slope);
+    const std::filesystem::path ground = folder / "ground.obj";
+    std::ofstream(ground) << fmt::format("v -500 {0} -400\nv -500 {0} 400\nv 100 {1} 400\nv 100 {1} -400\nf 1 2 3 4\n",
+                                         190.0 - 260.0 * rise, 190.0 + 340.0 * rise);
+    const ExpectedSpeed found =
+        expected_of("lava_volcano.toml",
+                    {"material.0.viscosity={ law = \"newtonian\", viscosity_Pa_s = 2e3 }",
+                     fmt::format("collider.0.mesh=\"{}\"", ground.string()), "emitter.0.position_m=[-240, 200, 40]",
+                     "emitter.1.position_m=[-240, 200, 80]", "emitter.2.position_m=[-240, 200, 120]"});
+    const double q = 1200.0 / 24.0, weight = 2600.0 * 9.81 * std::sin(slope), d = std::cbrt(3.0 * 2e3 * q / weight),
+                 u = weight * d * d / 4e3;
+    EXPECT_NEAR(found.speed / u, 1.0, 1e-2) << degrees << " degrees: " << found.reason;
+  }
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Advise, ARelaxedStressTooSoft) {
