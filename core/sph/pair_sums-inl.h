@@ -29,8 +29,8 @@ struct RateIndex {
 };
 
 /// Adds sum V_j w (v_j - v_i) (x) grad_w_ij and sum V_j w (x_j - x_i) (x) grad_w_ij for a vector of neighbours, `weight` being V_j w F.
-template <int Dim, typename Real, bool with_velocity>
-HWY_INLINE void add_moments(const Neighbours<Dim, Real>& pair, Simd<Real> weight, Simd<Real>* velocity_moment, Simd<Real>* position_moment) {
+template <int Dim, typename Real, bool with_velocity, typename Pair>
+HWY_INLINE void add_moments(const Pair& pair, Simd<Real> weight, Simd<Real>* velocity_moment, Simd<Real>* position_moment) {
   // v_j - v_i = -v_ij and x_j - x_i = -x_ij: one sign for all.
   for (int b = 0; b < Dim; ++b) {
     const auto weighted = hn::Mul(weight, pair.x_ij[b]);
@@ -67,6 +67,15 @@ SightedSums<Dim, Real> sighted_sums(const PairFields<Dim, Real>& fields, const P
   return sums;
 }
 
+/// A vector of neighbours as the sums of the first pass need them: a loop of its own finds this for a whole row, as one
+/// that did both would have more numbers in use than there are registers.
+template <int Dim, typename Real>
+struct WeighedPairs {
+  Simd<Real> x_ij[Dim], v_ij[Dim], r2;
+  Simd<Real> volume_f, mass_f;  ///< V_j F and m_j F
+  Simd<Real> xsph_weight;       ///< m_j (1/rho_i + 1/rho_j) W_ij
+};
+
 template <typename PairKernel, int Dim, typename Real, bool with_stress, bool with_sight, HeatTerms heat_terms, bool with_xsph>
 void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, double h, std::size_t begin,
                std::size_t end, RateSums<Dim, Real>* sums, [[maybe_unused]] SightedSums<Dim, Real>* sighted) {
@@ -80,17 +89,32 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   [[maybe_unused]] const auto least_balance = hn::Set(d, Real(0.2)), most_balance = hn::Set(d, Real(1.8));
   [[maybe_unused]] const auto one = hn::Set(d, Real(1)), least_sum = hn::Set(d, Real(1e-30));
   std::vector<std::int32_t> buffer(lists.room());
+  std::vector<WeighedPairs<Dim, Real>, tbb::cache_aligned_allocator<WeighedPairs<Dim, Real>>> weighed(lists.room() / lanes<Real> + 1);
   for (std::size_t i = begin; i < end; ++i) {
     const Real* record_i = records + i * stride;
     [[maybe_unused]] const auto inverse_density_i = hn::Set(d, 1 / record_i[Fields::density_at]);
     [[maybe_unused]] auto thinnest = hn::Set(d, record_i[Fields::rest_viscosity_at]);
-    const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+    const auto weigh_pairs = [&](const std::int32_t* index, WeighedPairs<Dim, Real>& out) HWY_ATTR __attribute__((always_inline)) {
       const Neighbours<Dim, Real> pair(record_i, records, stride, index);
+      const auto r2 = dot<Dim, Real>(pair.x_ij, pair.x_ij);
+      out.volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(r2));
+      out.mass_f = hn::Mul(pair.density, out.volume_f);
+      out.r2 = r2;
+      for (int a = 0; a < Dim; ++a) {
+        out.x_ij[a] = pair.x_ij[a];
+        out.v_ij[a] = pair.v_ij[a];
+      }
+      if constexpr (with_xsph) {
+        const auto mass_ratio = hn::MulAdd(hn::Mul(pair.volume, pair.density), inverse_density_i, pair.volume);
+        out.xsph_weight = hn::Mul(mass_ratio, kernel.value(r2));
+      }
+    };
+    const NeighbourLists::Row row = lists.read(i, buffer.data());
+    const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const WeighedPairs<Dim, Real>& pair = weighed[static_cast<std::size_t>(index - row.padded.data()) / lanes<Real>];
       const auto &x_ij = pair.x_ij, &v_ij = pair.v_ij;
-      const auto r2 = dot<Dim, Real>(x_ij, x_ij);
-      const auto f = kernel.gradient_over_r(r2);
-      const auto volume_f = hn::Mul(pair.volume, f);
-      sum[At::density_rate] = hn::MulAdd(hn::Mul(pair.density, volume_f), dot<Dim, Real>(v_ij, x_ij), sum[At::density_rate]);
+      const auto volume_f = pair.volume_f;
+      sum[At::density_rate] = hn::MulAdd(pair.mass_f, dot<Dim, Real>(v_ij, x_ij), sum[At::density_rate]);
       if constexpr (with_stress || with_heat) {
         add_moments<Dim, Real, with_stress>(pair, volume_f, sum + At::velocity_moment, sum + At::position_moment);
       }
@@ -111,7 +135,7 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
         }
         const auto balance = hn::Min(hn::Max(hn::Add(one, hn::Sub(along_i, along_j)), least_balance), most_balance);
         const auto balanced_f = hn::Mul(volume_f, balance);
-        sum[At::moment_trace] = hn::NegMulAdd(balanced_f, r2, sum[At::moment_trace]);
+        sum[At::moment_trace] = hn::NegMulAdd(balanced_f, pair.r2, sum[At::moment_trace]);
         const auto imbalance = hn::NegMulAdd(volume_f, along_j, volume_f);
         for (int a = 0; a < Dim; ++a) sum[At::heat_imbalance + a] = hn::MulAdd(imbalance, x_ij[a], sum[At::heat_imbalance + a]);
         const auto t_ij = hn::Sub(of_i(Fields::heat_at), of_j(Fields::heat_at));
@@ -124,14 +148,12 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
         }
         sum[At::heat] = hn::Add(conducted, sum[At::heat]);
       }
-      if constexpr (with_xsph) {
-        const auto mass_ratio = hn::MulAdd(hn::Mul(pair.volume, pair.density), inverse_density_i, pair.volume);
-        const auto w = hn::Mul(mass_ratio, kernel.value(r2));
-        for (int a = 0; a < Dim; ++a) sum[At::xsph + a] = hn::NegMulAdd(v_ij[a], w, sum[At::xsph + a]);
-      }
+      if constexpr (with_xsph)
+        for (int a = 0; a < Dim; ++a) sum[At::xsph + a] = hn::NegMulAdd(v_ij[a], pair.xsph_weight, sum[At::xsph + a]);
     };
     Real total[At::n_sums];
-    const NeighbourLists::Row row = lists.read(i, buffer.data());
+    for (std::size_t k = 0; k < row.neighbours.size(); k += lanes<Real>)
+      weigh_pairs(row.padded.data() + k, weighed[k / lanes<Real>]);
     sum_row(row, total, add_pairs);
 
     RateSums<Dim, Real>& out = sums[i - begin];
@@ -195,9 +217,8 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
       const auto inverse = hn::Div(one, hn::Mul(hn::Add(r2, soft), density_sum));
       const auto pi = hn::Mul(hn::Mul(damping, approach), inverse);
       const auto pressure = hn::Add(hn::Set(d, record_i[Fields::specific_pressure_at]), specific_pressure_j);
-      // -m_j (pressure + Pi_ij) F, with Pi_ij = -pi and m_j = V_j rho_j.
-      const auto isotropic = hn::Mul(hn::Mul(pair.density, volume_f), hn::Sub(pi, pressure));
-      for (int a = 0; a < Dim; ++a) sum[a] = hn::MulAdd(isotropic, x_ij[a], sum[a]);
+      // Along x_ij: -m_j (pressure + Pi_ij) F, with Pi_ij = -pi and m_j = V_j rho_j.
+      auto along = hn::Mul(hn::Mul(pair.density, volume_f), hn::Sub(pi, pressure));
       if constexpr (with_stress) {
         constexpr int n_stress = Fields::n_stress(with_hourglass);
         Simd<Real> stress_j[padded_fields(n_stress)];
@@ -229,10 +250,10 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
             unseen = hn::NegMulAdd(pair_sum(Fields::hourglass_at + 1 + m), hn::Mul(x_ij[a], x_ij[b]), unseen);
           }
           const auto strength = with_sight ? hourglass : hn::Mul(scale, hourglass);
-          const auto weight = hn::Mul(hn::Mul(strength, unseen), hn::Mul(inverse, density_sum));
-          for (int a = 0; a < Dim; ++a) sum[a] = hn::MulAdd(weight, x_ij[a], sum[a]);
+          along = hn::MulAdd(hn::Mul(strength, hn::Mul(inverse, density_sum)), unseen, along);
         }
       }
+      for (int a = 0; a < Dim; ++a) sum[a] = hn::MulAdd(along, x_ij[a], sum[a]);
     };
     Real total[n_sums];
     sum_row(lists.read(i, buffer.data()), total, add_pairs);
