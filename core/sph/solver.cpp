@@ -130,7 +130,9 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
         "the time step collapsed to {:.3g} s (floor {:.3g} s) at t = {:.6g} s, limited by the {} term; lower the {} or raise "
         "[time_step] min_s",
         limit.dt, parameters_.min_time_step, time, time_step_term_names[static_cast<std::size_t>(limit.term)],
-        limit.term == TimeStepTerm::viscous ? "viscosity" : "sound speed"));
+        limit.term == TimeStepTerm::viscous             ? "viscosity"
+        : limit.term == TimeStepTerm::density_diffusion ? "density diffusion"
+                                                        : "sound speed"));
   const TimeStep step = fit_to_frame(limit, remaining);
   const double dt = step.dt;
 

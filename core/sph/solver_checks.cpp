@@ -47,6 +47,7 @@ TimeStepInput Solver<Dim, Real>::time_step_input() const {
   input.max_kinematic_viscosity = extremes.viscosity;
   for (const Material& m : materials_)
     if (m.heat) input.max_diffusivity = std::max(input.max_diffusivity, m.heat->diffusivity);
+  input.density_diffusivity = parameters_.density_diffusion * parameters_.smoothing_length * parameters_.sound_speed;
   return input;
 }
 

@@ -14,6 +14,8 @@ TimeStep compute_time_step(const TimeStepInput& input, double courant) {
     limit(courant * h * h / (8.0 * input.max_kinematic_viscosity), TimeStepTerm::viscous);
   if (input.max_acceleration > 0.0) limit(courant * std::sqrt(h / input.max_acceleration), TimeStepTerm::acceleration);
   if (input.max_diffusivity > 0.0) limit(h * h / (8.0 * input.max_diffusivity), TimeStepTerm::conduction);
+  if (input.density_diffusivity > 0.0)
+    limit(h * h / (6.0 * input.density_diffusivity), TimeStepTerm::density_diffusion);
   return step;
 }
 
