@@ -214,8 +214,9 @@ void visit_simulation(SchemaVisitor& v, Scene& s) {
               "the sound speed where a material is `smd`, else 0"},
              s.solver.shear_wave_speed, non_negative);
     v.number({"artificial_viscosity", "alpha, damps sound"}, s.solver.artificial_viscosity, {0.0, 10.0});
-    v.number({"density_diffusion", "delta, smooths pressure noise in fluids with little viscosity; 0.1 to 0.3"}, s.solver.density_diffusion,
-             {0.0, 1.0});
+    v.number({"density_diffusion",
+              "delta, smooths pressure noise in fluids with little viscosity; 0.1 to 0.5, and from 0.4 on it shortens the step"},
+             s.solver.density_diffusion, {0.0, 1.0});
     v.boolean({"corrected_divergence", "density by the corrected velocity gradient, exact at a free surface: keeps thin layers and the fronts of "
                                        "lava from swelling; of viscous scenes with `density` by continuity"},
               s.solver.corrected_divergence);

@@ -41,7 +41,7 @@ struct SolverParameters {
   double shear_wave_speed = 0.0;    ///< sqrt(G/rho0) of the relaxed stress [m/s]; 0: stress follows the strain rate at once
   double artificial_viscosity = 0.0;  ///< alpha of [P 6-15]
   double quadratic_artificial_viscosity = 0.0;  ///< beta of [S 4.40], of an ideal gas alone
-  double density_diffusion = 0.0;     ///< delta of [Antuono 2010], on what pressure gradients do not explain; 0.1 to 0.3
+  double density_diffusion = 0.0;     ///< delta of [Antuono 2010], on what pressure gradients do not explain; 0.1 to 0.5
   double hourglass_control = 0.0;     ///< share of the viscosity that acts on motions no gradient sees, 0 to 1; of scenes with a stress
   double xsph = 0.0;                ///< epsilon of [P 6-16]
   /// Density changes with the divergence of the corrected velocity gradient, exact at a free surface (docs/decisions/0015-thin-flows.md).
