@@ -15,11 +15,13 @@ namespace smelt {
 
 namespace {
 
-/// A material in a layer on a slope.
+/// A material in a layer that runs down a slope, or off its own pile where that is steeper.
 struct Layer {
   const Material& material;
-  double gravity;  ///< along the slope [m/s^2]
+  double gravity;  ///< [m/s^2]
   double fastest;  ///< beyond a thousand times this it does not matter how fast [m/s]
+  double slope;    ///< its sine
+  double width;    ///< of the pile: as thick as this it is as steep as can be [m]
 
   FlowCurve curve() const {
     return material.heat ? flow_curve_at(material.rheology, 1.0, material.heat->hot) : flow_curve_at(material.rheology, 0.0);
@@ -29,7 +31,7 @@ struct Layer {
   double speed(double thickness) const {
     const FlowCurve c = curve();
     if (c.yield_stress == 0.0 && c.consistency == 0.0) return std::numeric_limits<double>::infinity();
-    const double stress = material.density * gravity * thickness, fastest_rate = 1e3 * fastest / thickness;
+    const double stress = material.density * gravity * std::max(slope, std::min(1.0, thickness / width)) * thickness, fastest_rate = 1e3 * fastest / thickness;
     // The spring takes next to nothing: it keeps the rate finite.
     return relaxed_shear_rate(c, stress / fastest_rate, stress, 0.0) * thickness * c.index / (c.index + 1.0);
   }
@@ -121,12 +123,12 @@ ExpectedSpeed expect_speed(const SimulationSetup& setup) {
     std::vector<bool> present(setup.materials.size(), setup.particles.material.empty());
     for (const std::uint8_t m : setup.particles.material) present[m] = true;
     for (std::size_t m = 0; m < present.size(); ++m)
-      if (present[m]) consider_layer({setup.materials[m], g, free_fall}, height, fall);
+      if (present[m]) consider_layer({setup.materials[m], g, free_fall, 1.0, height}, height, fall);
   }
   const double slope = p.emitters.empty() ? 1.0 : steepest_slope(colliders, p.outflows, down);
   for (const Emitter<3>& e : p.emitters) {
-    const Layer layer{setup.materials[e.material], g * slope, free_fall};
-    const double thickness = layer.thickness(e.flow_rate / (2.0 * e.radius), std::max(drop, 2.0 * e.radius));
+    const Layer layer{setup.materials[e.material], g, free_fall, slope, 2.0 * e.radius};
+    const double thickness = layer.thickness(e.flow_rate / layer.width, std::max(drop, 2.0 * e.radius));
     consider_layer(layer, thickness, fall_from(colliders, e.position, down, drop, setup.spacing));
   }
   if (largest.speed < setup.expected_speed) return largest;

@@ -259,8 +259,7 @@ std::optional<FirstContact<Dim>> SimplexBvh<Dim>::first_contact(const Vec<Dim>& 
 }
 
 template <int Dim>
-typename SimplexBvh<Dim>::Visits SimplexBvh<Dim>::count_visits(const Vec<Dim>& centre, const Vec<Dim>& displacement,
-                                                               double radius) const {
+std::size_t SimplexBvh<Dim>::count_visits(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius) const {
   struct CountingQuery : SweepQuery {
     using SweepQuery::SweepQuery;
     mutable std::size_t n_nodes = 0;
@@ -269,16 +268,11 @@ typename SimplexBvh<Dim>::Visits SimplexBvh<Dim>::count_visits(const Vec<Dim>& c
       return SweepQuery::entry(node, leaf);
     }
   };
-  Visits visits;
-  if (nodes_.empty() || displacement.isZero(0.0)) return visits;
+  if (nodes_.empty() || displacement.isZero(0.0)) return 0;
   std::optional<FirstContact<Dim>> first;
   CountingQuery query(*this, centre, displacement, radius);
-  visit(0, query, [&](std::uint32_t k) {
-    ++visits.simplices;
-    improve(first, k, query, centre, displacement, radius);
-  });
-  visits.nodes = query.n_nodes;
-  return visits;
+  visit(0, query, [&](std::uint32_t k) { improve(first, k, query, centre, displacement, radius); });
+  return query.n_nodes;
 }
 
 template class SimplexBvh<1>;

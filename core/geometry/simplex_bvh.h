@@ -49,12 +49,8 @@ class SimplexBvh {
   std::optional<FirstContact<Dim>> first_contact(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius,
                                                  std::uint32_t except = none) const;
 
-  /// What first_contact() costs, in a measure that no cache blurs.
-  struct Visits {
-    std::size_t nodes = 0;      ///< of eight boxes each
-    std::size_t simplices = 0;  ///< tried in double precision
-  };
-  Visits count_visits(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius) const;
+  /// How many nodes, of eight boxes each, first_contact() looks into: what it costs, in a measure that no cache blurs.
+  std::size_t count_visits(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius) const;
 
  private:
   static constexpr std::uint32_t width = 8;

@@ -196,7 +196,7 @@ double mean_nodes_visited(int n_cells) {
     const Vec3 foot(inside(random), 0.0, inside(random));
     const double ground = bvh.nearest(foot, 1.0)->offset[1];
     const Vec3 centre = foot + Vec3(0.0, -ground + 2.0 * radius, 0.0);
-    nodes += static_cast<double>(bvh.count_visits(centre, Vec3(radius, -2.0 * radius, 0.0), radius).nodes);
+    nodes += static_cast<double>(bvh.count_visits(centre, Vec3(radius, -2.0 * radius, 0.0), radius));
   }
   return nodes / n_spheres;
 }
