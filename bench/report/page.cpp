@@ -26,6 +26,7 @@ constexpr const char* style = R"(
   table { border-collapse: collapse; font-size: 14px; margin: 1em 0; }
   td, th { border-bottom: 1px solid #ddd; padding: 2px 10px; text-align: right; }
   td:first-child, th:first-child { text-align: left; }
+  td:nth-child(n + 3) { white-space: nowrap; }
   code { background: #f3f3f3; padding: 1px 4px; }
   .failed { color: #a00; font-weight: bold; }
 )";
