@@ -2,6 +2,8 @@
 
 namespace smelt {
 
-std::filesystem::path bench_folder() { return SMELT_BENCH_FOLDER; }
+std::filesystem::path bench_folder() {
+  return SMELT_BENCH_FOLDER;
+}
 
 }  // namespace smelt

@@ -1,6 +1,8 @@
-// What collision costs: a sheet of fluid that slides over bumpy terrain, for meshes of 1 thousand to 1 million triangles. The swept
-// collision is what the drift takes more than without ground; the wall terms are timed stage by stage, looking up facets included.
-//   bench_collision [layers] [cells]      of particles, 10 unless said (always some 10 thousand particles); of the terrain along a side, one mesh alone
+// What collision costs: a sheet of fluid that slides over bumpy terrain, for meshes of 1 thousand to 1 million
+// triangles. The swept collision is what the drift takes more than without ground; the wall terms are timed stage by
+// stage, looking up facets included.
+//   bench_collision [layers] [cells]      of particles, 10 unless said (always some 10 thousand particles); of the
+//   terrain along a side, one mesh alone
 
 #include "bench/cases/set_up.h"
 #include "core/parallel.h"
@@ -39,9 +41,9 @@ Obstacle<3> make_terrain(int n, double half) {
 }
 
 struct Timing {
-  double step = 0.0;   ///< [ms], best of three runs; the next two of the same run
-  double drift = 0.0;  ///< [ms]
-  double walls = 0.0;  ///< sums, gradients and forces of walls [ms]; what they add to the rates is among those
+  double step = 0.0;       ///< [ms], best of three runs; the next two of the same run
+  double drift = 0.0;      ///< [ms]
+  double walls = 0.0;      ///< sums, gradients and forces of walls [ms]; what they add to the rates is among those
   std::size_t n_near = 0;  ///< particles within the support of the ground
   double nodes = 0.0;      ///< of the tree that a particle of the lowest layer looks into as it moves
 };
@@ -89,7 +91,8 @@ Timing time_steps(int n_layers, int n_cells, double half) {
     if (n_cells > 0 && run == 0) best.nodes = mean_nodes_visited(lava, make_terrain(n_cells, half), parameters);
     best.n_near = 0;
     for (const Vec3& x : lava.position) best.n_near += x[1] - ground(x[0], x[2]) < 2.0 * parameters.smoothing_length;
-    Solver<3, float> solver(parameters, {viscoplastic_material(density, 200.0, 300.0, 0.8, 100.0)}, std::move(colliders), std::move(lava));
+    Solver<3, float> solver(parameters, {viscoplastic_material(density, 200.0, 300.0, 0.8, 100.0)},
+                            std::move(colliders), std::move(lava));
     solver.prepare();
     std::array<double, step_stage_names.size()> taken{};
     auto last = std::chrono::steady_clock::now();
@@ -121,14 +124,17 @@ int main(int argc, char** argv) {
   const double n_wide = std::sqrt(10000.0 / n_layers);
   const double half = n_wide * spacing;  // the ground is twice as wide as the fluid
   const Timing alone = time_steps(n_layers, 0, half);
-  fmt::print("{} layers, {} particles near the ground; a step without it takes {:.2f} ms\n", n_layers, alone.n_near, alone.step);
-  fmt::print("| triangles | edge / spacing | step, ms | swept collision | wall terms | us a particle near it | nodes looked into |\n"
-             "|---|---|---|---|---|---|---|\n");
+  fmt::print("{} layers, {} particles near the ground; a step without it takes {:.2f} ms\n", n_layers, alone.n_near,
+             alone.step);
+  fmt::print(
+      "| triangles | edge / spacing | step, ms | swept collision | wall terms | us a particle near it | nodes looked "
+      "into |\n|---|---|---|---|---|---|---|\n");
   const std::vector<int> meshes = argc > 2 ? std::vector<int>{std::atoi(argv[2])} : std::vector<int>{22, 71, 224, 707};
   for (const int n_cells : meshes) {
     const Timing with = time_steps(n_layers, n_cells, half);
     const double swept = with.drift - alone.drift;
-    fmt::print("| {} | {:.2f} | {:.2f} | {:.1f} % | {:.1f} % | {:.2f} | {:.1f} |\n", 2 * n_cells * n_cells, 2.0 * half / n_cells / spacing, with.step,
-               100.0 * swept / with.step, 100.0 * with.walls / with.step, 1e3 * (swept + with.walls) / static_cast<double>(with.n_near), with.nodes);
+    fmt::print("| {} | {:.2f} | {:.2f} | {:.1f} % | {:.1f} % | {:.2f} | {:.1f} |\n", 2 * n_cells * n_cells,
+               2.0 * half / n_cells / spacing, with.step, 100.0 * swept / with.step, 100.0 * with.walls / with.step,
+               1e3 * (swept + with.walls) / static_cast<double>(with.n_near), with.nodes);
   }
 }

@@ -3,15 +3,15 @@
 
 #include "core/error.h"
 
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <cstdlib>
+#include <sys/wait.h>
 #include <type_traits>
+#include <unistd.h>
 
 namespace smelt {
 
-/// What `measure()` returns in a child process. To be called before this process has any threads. Throws InternalError where the child fails.
+/// What `measure()` returns in a child process. To be called before this process has any threads. Throws InternalError
+/// where the child fails.
 template <typename Measure>
 auto run_in_child(const Measure& measure) {
   using Result = decltype(measure());

@@ -5,8 +5,10 @@
 #define HWY_DISABLED_TARGETS HWY_AVX3_DL
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "bench/machine_peaks.cpp"
+// clang-format off
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
+// clang-format on
 
 #include <algorithm>
 #include <chrono>
@@ -34,7 +36,9 @@ inline float multiply_add(std::size_t n_rounds) {
   return hn::GetLane(hn::SumOfLanes(d, sum));
 }
 
-inline double flops_a_round() { return 2.0 * 12.0 * static_cast<double>(hn::Lanes(Lanes())); }
+inline double flops_a_round() {
+  return 2.0 * 12.0 * static_cast<double>(hn::Lanes(Lanes()));
+}
 
 /// The sum of `n` numbers, a multiple of 128.
 inline float sum_all(const float* values, std::size_t n) {
@@ -44,7 +48,8 @@ inline float sum_all(const float* values, std::size_t n) {
   hn::Vec<Lanes> sums[n_sums];
   for (auto& sum : sums) sum = hn::Zero(d);
   for (std::size_t k = 0; k < n; k += n_sums * lanes)
-    for (int s = 0; s < n_sums; ++s) sums[s] = hn::Add(sums[s], hn::LoadU(d, values + k + static_cast<std::size_t>(s) * lanes));
+    for (int s = 0; s < n_sums; ++s)
+      sums[s] = hn::Add(sums[s], hn::LoadU(d, values + k + static_cast<std::size_t>(s) * lanes));
   for (int s = 1; s < n_sums; ++s) sums[0] = hn::Add(sums[0], sums[s]);
   return hn::GetLane(hn::SumOfLanes(d, sums[0]));
 }
@@ -81,7 +86,8 @@ double read_bytes_per_second(std::size_t n_bytes) {
   const std::size_t n_passes = std::max<std::size_t>(1, (std::size_t{1} << 28) / n_bytes);
   const double seconds = best_seconds([&] {
     float sum = 0.0f;
-    for (std::size_t pass = 0; pass < n_passes; ++pass) sum += HWY_DYNAMIC_DISPATCH(sum_all)(values.data(), values.size());
+    for (std::size_t pass = 0; pass < n_passes; ++pass)
+      sum += HWY_DYNAMIC_DISPATCH(sum_all)(values.data(), values.size());
     return sum;
   });
   return static_cast<double>(n_passes * n_bytes) / seconds;
@@ -92,7 +98,8 @@ double read_bytes_per_second(std::size_t n_bytes) {
 MachinePeaks measure_machine_peaks() {
   MachinePeaks peaks;
   constexpr std::size_t n_rounds = 4'000'000;
-  peaks.flops = HWY_DYNAMIC_DISPATCH(flops_a_round)() * n_rounds / best_seconds([] { return HWY_DYNAMIC_DISPATCH(multiply_add)(n_rounds); });
+  peaks.flops = HWY_DYNAMIC_DISPATCH(flops_a_round)() * n_rounds /
+                best_seconds([] { return HWY_DYNAMIC_DISPATCH(multiply_add)(n_rounds); });
   peaks.l1_bytes = read_bytes_per_second(std::size_t{24} << 10);
   peaks.l2_bytes = read_bytes_per_second(std::size_t{384} << 10);
   peaks.l3_bytes = read_bytes_per_second(std::size_t{6} << 20);

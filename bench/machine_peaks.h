@@ -3,13 +3,14 @@
 
 namespace smelt {
 
-/// Of one core, measured; bytes are read, with vector loads and additions, the second time over a buffer of the size named.
+/// Of one core, measured; bytes are read, with vector loads and additions, the second time over a buffer of the size
+/// named.
 struct MachinePeaks {
-  double flops = 0.0;        ///< single precision, fused multiply-adds counting two [1/s]
-  double l1_bytes = 0.0;     ///< 24 KiB [B/s]
-  double l2_bytes = 0.0;     ///< 384 KiB [B/s]
-  double l3_bytes = 0.0;     ///< 6 MiB [B/s]
-  double memory_bytes = 0.0; ///< 256 MiB [B/s]
+  double flops = 0.0;         ///< single precision, fused multiply-adds counting two [1/s]
+  double l1_bytes = 0.0;      ///< 24 KiB [B/s]
+  double l2_bytes = 0.0;      ///< 384 KiB [B/s]
+  double l3_bytes = 0.0;      ///< 6 MiB [B/s]
+  double memory_bytes = 0.0;  ///< 256 MiB [B/s]
 };
 
 /// Best of several runs, with the widest vectors that the pair loops use here; some two seconds.

@@ -19,7 +19,8 @@ using Fields = PairFields<3, float>;
 constexpr double smoothing_length = 1.3;  // spacings
 constexpr double skin = 0.17;             // smoothing lengths: as the step bench's solver chooses on average
 
-// Additions, multiplications, comparisons, divisions and roots of one pair in the loops, the reduction at a row's end left out.
+// Additions, multiplications, comparisons, divisions and roots of one pair in the loops, the reduction at a row's end
+// left out.
 constexpr double rates_flops = 6 + 5 + 13 + 7 + 33 + 31 + 20;
 constexpr double forces_flops = 6 + 5 + 13 + 15 + 27 + 40;
 // The first cache line of a record, or both, and a place in a run.
@@ -39,14 +40,16 @@ Block make_jittered_block(std::size_t n_particles) {
   std::vector<Vec3> position;
   for (int z = 0; z < edge; ++z)
     for (int y = 0; y < edge; ++y)
-      for (int x = 0; x < edge; ++x) position.push_back(Vec3(x + jitter(random), y + jitter(random), z + jitter(random)));
+      for (int x = 0; x < edge; ++x)
+        position.push_back(Vec3(x + jitter(random), y + jitter(random), z + jitter(random)));
   std::vector<std::int32_t> id(position.size());
   std::iota(id.begin(), id.end(), 0);
   const double reach = (2.0 + skin) * smoothing_length;
   Block block;
   block.n = position.size();
   std::vector<Vec3> sorted;
-  for (const std::int32_t k : compute_cell_order<3>(position, id, reach)) sorted.push_back(position[static_cast<std::size_t>(k)]);
+  for (const std::int32_t k : compute_cell_order<3>(position, id, reach))
+    sorted.push_back(position[static_cast<std::size_t>(k)]);
   build_neighbour_lists<3>(sorted, reach, reach, pair_lanes<float>, block.lists);
   for (std::size_t i = 0; i < block.n; ++i) block.n_pairs += static_cast<double>(block.lists.row(i).size());
   block.fields.stride = Fields::stride_of(true);
@@ -74,10 +77,12 @@ void time_passes(const Block& block, const std::string& instructions, std::vecto
   terms.heat = HeatTerms::uniform;
   std::vector<RateSums<3, float>> rates(block.n);
   std::vector<std::array<float, 3>> acceleration(block.n);
-  const double rates_seconds =
-      best_seconds([&] { compute_rate_sums<3, float>(block.fields, block.lists, terms, smoothing_length, 0, block.n, rates.data()); });
+  const double rates_seconds = best_seconds([&] {
+    compute_rate_sums<3, float>(block.fields, block.lists, terms, smoothing_length, 0, block.n, rates.data());
+  });
   const double forces_seconds = best_seconds([&] {
-    compute_force_sums<3, float>(block.fields, block.lists, terms, {smoothing_length, 0.1, 10.0}, 0, block.n, acceleration.data());
+    compute_force_sums<3, float>(block.fields, block.lists, terms, {smoothing_length, 0.1, 10.0}, 0, block.n,
+                                 acceleration.data());
   });
   passes.push_back({"rates", instructions, block.n, block.n_pairs / rates_seconds, rates_flops, rates_bytes});
   passes.push_back({"forces", instructions, block.n, block.n_pairs / forces_seconds, forces_flops, forces_bytes});

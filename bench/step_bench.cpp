@@ -22,12 +22,14 @@ Particles<3> make_heap(std::size_t n, bool with_heat) {
   box.upper = Vec3(0.5 * wide * spacing, high * spacing, 0.5 * wide * spacing);
   Particles<3> heap = make_block<3>(box, spacing, density, 0.1);
   if (!with_heat) return heap;
-  for (const Vec3& x : heap.position) heap.temperature.push_back(cold + (hot - cold) * std::min(1.0, 2.0 * x[1] / box.upper[1]));
+  for (const Vec3& x : heap.position)
+    heap.temperature.push_back(cold + (hot - cold) * std::min(1.0, 2.0 * x[1] / box.upper[1]));
   return heap;
 }
 
 Material make_wax(const StepBenchTerms& terms) {
-  Material wax = terms.viscoplastic ? viscoplastic_material(density, 50.0, 20.0, 0.5, 100.0) : newtonian_material(density, 5.0);
+  Material wax =
+      terms.viscoplastic ? viscoplastic_material(density, 50.0, 20.0, 0.5, 100.0) : newtonian_material(density, 5.0);
   if (terms.heat) {
     wax.heat = HeatProperties{1e-5, cold, hot, 0.0, 0.0, 0.0};
     if (terms.viscoplastic) {
@@ -53,7 +55,8 @@ double mean_neighbours(const Solver<3, float>& solver) {
   const double reach2 = std::pow(2.0 * solver.parameters().smoothing_length, 2);
   double n = 0.0;
   for (std::size_t i = 0; i < x.size(); ++i)
-    for (const std::int32_t j : solver.neighbours().row(i)) n += (x[i] - x[static_cast<std::size_t>(j)]).squaredNorm() < reach2;
+    for (const std::int32_t j : solver.neighbours().row(i))
+      n += (x[i] - x[static_cast<std::size_t>(j)]).squaredNorm() < reach2;
   return n / static_cast<double>(x.size());
 }
 
@@ -94,7 +97,8 @@ StepBenchResult time_steps(std::size_t n_particles, const StepBenchTerms& terms)
   const auto advance_past_searches = [&](std::size_t n) {
     const auto most_steps = static_cast<int>(40 * n);
     int n_steps = 0;
-    for (const std::size_t start = solver.n_searches(); solver.n_searches() < start + n && n_steps < most_steps; ++n_steps)
+    for (const std::size_t start = solver.n_searches(); solver.n_searches() < start + n && n_steps < most_steps;
+         ++n_steps)
       t += solver.step(1.0, t).dt;
     return n_steps;
   };
@@ -108,7 +112,8 @@ StepBenchResult time_steps(std::size_t n_particles, const StepBenchTerms& terms)
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     if (seconds / n_steps >= result.seconds_per_step) continue;
     result.seconds_per_step = seconds / n_steps;
-    result.steps_per_search = static_cast<double>(n_steps) / static_cast<double>(std::max<std::size_t>(1, solver.n_searches() - searches));
+    result.steps_per_search =
+        static_cast<double>(n_steps) / static_cast<double>(std::max<std::size_t>(1, solver.n_searches() - searches));
   }
   result.stage_shares = observe_stages(solver, [&] { advance_past_searches(n_cycles); });
   result.bytes_per_particle = (peak_memory() - before) * 1048576.0 / static_cast<double>(result.n_particles);

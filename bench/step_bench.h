@@ -19,16 +19,17 @@ struct StepBenchTerms {
 
 struct StepBenchResult {
   std::size_t n_particles = 0;
-  double neighbours = 0.0;             ///< in the support, mean
-  double seconds_per_step = 0.0;       ///< least of three runs
-  double steps_per_search = 0.0;       ///< steps from one search for neighbours to the next, mean
-  double bytes_per_particle = 0.0;     ///< at the peak of a process that does nothing else
+  double neighbours = 0.0;          ///< in the support, mean
+  double seconds_per_step = 0.0;    ///< least of three runs
+  double steps_per_search = 0.0;    ///< steps from one search for neighbours to the next, mean
+  double bytes_per_particle = 0.0;  ///< at the peak of a process that does nothing else
   std::array<double, step_stage_names.size()> stage_shares{};  ///< of the time of a step, by StepStage
   double particle_steps_per_second() const { return static_cast<double>(n_particles) / seconds_per_step; }
 };
 
-/// Times steps of a heap of about `n_particles`, twice as wide as high, its lattice jittered, whose upper half is molten. Steps are timed in
-/// three runs from one search for neighbours to the next, in small heaps to the twentieth next.
+/// Times steps of a heap of about `n_particles`, twice as wide as high, its lattice jittered, whose upper half is
+/// molten. Steps are timed in three runs from one search for neighbours to the next, in small heaps to the twentieth
+/// next.
 StepBenchResult bench_step(std::size_t n_particles, const StepBenchTerms& terms = {});
 
 }  // namespace smelt

@@ -65,17 +65,20 @@ ParticleFrame make_splash(double n) {
   Filler filler(frame);
   const double width = std::cbrt(10.0 * n), depth = 0.1 * width;
   const auto height = [&](double x, double z) {
-    return depth * (0.93 + 0.25 * std::sin(0.21 * x) * std::cos(0.17 * z) + 0.2 * std::sin(40.0 * x / width + 25.0 * z / width));
+    return depth * (0.93 + 0.25 * std::sin(0.21 * x) * std::cos(0.17 * z) +
+                    0.2 * std::sin(40.0 * x / width + 25.0 * z / width));
   };
   for (double k = 0; k < width; ++k)
     for (double j = 0; j < 2.0 * depth; ++j)
       for (double i = 0; i < width; ++i) {
-        const bool sheet = j < 1.6 * depth && std::abs(std::hypot(i - 0.5 * width, k - 0.5 * width) - 0.2 * width - 0.2 * j) < 0.75;
+        const bool sheet =
+            j < 1.6 * depth && std::abs(std::hypot(i - 0.5 * width, k - 0.5 * width) - 0.2 * width - 0.2 * j) < 0.75;
         if (j < height(i, k) || sheet) filler.add(i, j, k);
       }
   std::mt19937 random(2);
   std::uniform_real_distribution<double> place(0.0, width);
-  for (int drop = 0; drop < static_cast<int>(0.01 * n); ++drop) filler.add(place(random), 1.5 * depth + 0.1 * place(random), place(random));
+  for (int drop = 0; drop < static_cast<int>(0.01 * n); ++drop)
+    filler.add(place(random), 1.5 * depth + 0.1 * place(random), place(random));
   return frame;
 }
 
@@ -99,7 +102,8 @@ Timing measure(const ParticleFrame& frame, const SurfacingOptions& options, int 
     reset_peak_memory();
     const auto start = std::chrono::steady_clock::now();
     timing.surface = build_surface(frame, options);
-    timing.seconds = std::min(timing.seconds, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    timing.seconds =
+        std::min(timing.seconds, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
     timing.mebibytes = std::max(timing.mebibytes, peak_memory());
   }
   return timing;
@@ -108,9 +112,11 @@ Timing measure(const ParticleFrame& frame, const SurfacingOptions& options, int 
 bool print_case(const char* shape, const ParticleFrame& frame, const Case& c, int n_runs) {
   const Timing timing = measure(frame, c.options, n_runs);
   const double rate = 1e-6 * static_cast<double>(frame.size()) / timing.seconds;
-  const bool met = rate >= c.bar && timing.mebibytes * 1048576.0 <= c.bar_bytes && compute_topology(timing.surface.mesh).closed();
-  fmt::print("| {} | {} | {} | {:.3f} | {:.2f} | {} | {:.0f} | {} | {} |\n", shape, frame.size(), c.what, timing.seconds, rate,
-             c.bar > 0.0 ? fmt::format("{}", c.bar) : "", timing.mebibytes, timing.surface.mesh.triangles.size(), met ? "yes" : "NO");
+  const bool met =
+      rate >= c.bar && timing.mebibytes * 1048576.0 <= c.bar_bytes && compute_topology(timing.surface.mesh).closed();
+  fmt::print("| {} | {} | {} | {:.3f} | {:.2f} | {} | {:.0f} | {} | {} |\n", shape, frame.size(), c.what,
+             timing.seconds, rate, c.bar > 0.0 ? fmt::format("{}", c.bar) : "", timing.mebibytes,
+             timing.surface.mesh.triangles.size(), met ? "yes" : "NO");
   return met;
 }
 
@@ -126,7 +132,9 @@ bool bench_surfacer(bool large) {
   const Case at_05{"cell 0.5, anisotropic", fine, 0.15, 8.0 * gibibyte};
 
   fmt::print("Threads: {}\n", tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-  fmt::print("| shape | particles | setting | s | million particles/s | bar | peak MiB | triangles | met |\n|---|---|---|---|---|---|---|---|---|\n");
+  fmt::print(
+      "| shape | particles | setting | s | million particles/s | bar | peak MiB | triangles | met |\n"
+      "|---|---|---|---|---|---|---|---|---|\n");
   bool all_met = true;
   for (const double n : {1e5, 1e6}) {
     const ParticleFrame ball = make_ball(n), splash = make_splash(n);

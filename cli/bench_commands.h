@@ -12,7 +12,8 @@ void print_step_bench(std::size_t n_particles, bool as_json);
 /// Bytes a particle and seconds a step of scenes that ask for ever more terms.
 void print_terms_bench(std::size_t n_particles, bool as_json);
 
-/// Seconds per iteration of the shots of [P table 6.2] beside the table's; of the one named `only`, of all nine where it is empty.
+/// Seconds per iteration of the shots of [P table 6.2] beside the table's; of the one named `only`, of all nine where
+/// it is empty.
 void print_thesis_bench(const std::string& only, bool as_json);
 
 /// `./smelt bench pairs`: the pair loops beside what a core can do.

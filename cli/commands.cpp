@@ -6,8 +6,8 @@
 #include "cli/terminal_progress.h"
 #include "core/error.h"
 #include "scenes/check_scene.h"
-#include "scenes/machine_pace.h"
 #include "scenes/describe_file.h"
+#include "scenes/machine_pace.h"
 #include "scenes/run_scene.h"
 #include "scenes/scene_reader.h"
 #include "scenes/scene_writer.h"
@@ -45,7 +45,8 @@ struct SceneOptions {
 /// oneTBB, and Embree through it, use this many threads while the object lives.
 std::unique_ptr<tbb::global_control> limit_threads(int threads) {
   if (threads <= 0) return nullptr;
-  return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
+  return std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                               static_cast<std::size_t>(threads));
 }
 
 void print_summary(const RunSummary& s) {
@@ -78,24 +79,28 @@ std::pair<T, T> parse_pair(const char* option, const std::string& text, char sep
 PictureRequest to_request(const SceneOptions& o) {
   PictureRequest request;
   request.diagnostic = o.look == "diagnostic";
-  for (const auto& [given, option] : {std::pair{!o.colour_by.empty(), "--colour-by"}, std::pair{!o.colour_range.empty(), "--colour-range"},
-                                      std::pair{!o.overlay.empty(), "--surface"}})
+  for (const auto& [given, option] :
+       {std::pair{!o.colour_by.empty(), "--colour-by"}, std::pair{!o.colour_range.empty(), "--colour-range"},
+        std::pair{!o.overlay.empty(), "--surface"}})
     if (given && !request.diagnostic) fail("{} goes with --look diagnostic alone", option);
   if (!o.colour_by.empty()) request.colour_by = o.colour_by;
   if (!o.overlay.empty()) request.overlay = o.overlay;
   if (!o.colour_range.empty()) {
     request.range = parse_pair<double>("--colour-range", o.colour_range, ':', "LOW:HIGH, two numbers");
-    if (!(request.range->first < request.range->second)) fail("--colour-range {}: LOW must be below HIGH", o.colour_range);
+    if (!(request.range->first < request.range->second))
+      fail("--colour-range {}: LOW must be below HIGH", o.colour_range);
   }
   if (!o.sheet.empty()) {
-    std::tie(request.sheet_columns, request.sheet_rows) = parse_pair<int>("--sheet", o.sheet, 'x', "COLUMNSxROWS, such as 4x3");
+    std::tie(request.sheet_columns, request.sheet_rows) =
+        parse_pair<int>("--sheet", o.sheet, 'x', "COLUMNSxROWS, such as 4x3");
     if (request.sheet_columns < 1 || request.sheet_rows < 1 || request.sheet_columns > 32 || request.sheet_rows > 64)
       fail("--sheet {}: must be 1x1 to 32x64", o.sheet);
   }
   return request;
 }
 
-void run_on_scene(const SceneOptions& o, const std::function<RunSummary(const Scene&, const RunOptions&, Progress&)>& work) {
+void run_on_scene(const SceneOptions& o,
+                  const std::function<RunSummary(const Scene&, const RunOptions&, Progress&)>& work) {
   const Scene scene = read_scene(o.scene, o.overrides);
   const auto threads = limit_threads(o.threads);
   RunOptions options{o.folder, std::nullopt, o.resume, to_request(o)};
@@ -114,14 +119,19 @@ void print_check(const SceneOptions& o) {
   const SceneForecast f = forecast_scene(scene);
   for (const std::string& warning : f.warnings) fmt::print(stderr, "smelt: warning: {}\n", warning);
   fmt::print(
-      "scene       {}: {} frames at {} fps\nparticles   {}{}, {:.4g} m apart\nvolume      {:.6g} m3\nsound speed {:.4g} m/s\n"
-      "time step   {:.3g} s, set by the {} term\nsteps       {:.0f} at that time step\nmemory      {:.1f} MB for the simulation\n"
-      "time        {:.0f} s for the simulation, {:.0f} s for the surfaces, {:.0f} s for the pictures, {}\n",
+      "scene       {}: {} frames at {} fps\nparticles   {}{}, {:.4g} m apart\nvolume      {:.6g} m3\nsound speed "
+      "{:.4g} m/s\ntime step   {:.3g} s, set by the {} term\nsteps       {:.0f} at that time step\nmemory      {:.1f} "
+      "MB for the simulation\ntime        {:.0f} s for the simulation, {:.0f} s for the surfaces, {:.0f} s for the "
+      "pictures, {}\n",
       scene.shot.name, scene.shot.frames, scene.shot.fps, f.n_particles,
-      f.n_particles_end == f.n_particles ? "" : fmt::format(" at the start, {} at the end", f.n_particles_end), f.spacing, f.body_volume, f.sound_speed, f.time_step,
-      f.time_step_term, f.n_steps, f.bytes / 1e6, f.simulate_seconds, f.surface_seconds, f.render_seconds,
-      f.load ? fmt::format("when this machine is idle; now {:.1f} times that", *f.load)
-             : std::string("at this machine's pace now (`./smelt bench --calibrate` on an idle machine makes this independent of what else runs)"));
+      f.n_particles_end == f.n_particles ? "" : fmt::format(" at the start, {} at the end", f.n_particles_end),
+      f.spacing, f.body_volume, f.sound_speed, f.time_step, f.time_step_term, f.n_steps, f.bytes / 1e6,
+      f.simulate_seconds, f.surface_seconds, f.render_seconds,
+      f.load
+          ? fmt::format("when this machine is idle; now {:.1f} times that", *f.load)
+          : std::string(
+                "at this machine's pace now (`./smelt bench --calibrate` on an idle machine makes this independent of "
+                "what else runs)"));
   for (const std::string& advice : f.advice) fmt::print("advice      {}\n", advice);
 }
 
@@ -135,14 +145,18 @@ struct SeriesArguments {
 void print_series(const SeriesArguments& a, const SceneOptions& o) {
   const auto threads = limit_threads(o.threads);
   SeriesOptions options{o.folder, o.resume, o.overrides, a.spacing, a.attributes};
-  if (o.folder.empty()) options.folder = std::filesystem::path("out") / std::filesystem::path(a.names.front()).stem().stem();
+  if (o.folder.empty())
+    options.folder = std::filesystem::path("out") / std::filesystem::path(a.names.front()).stem().stem();
   SeriesSummary s;
   {
     TerminalProgress progress;
     s = surface_series(a.names, o.frames, options, progress);
   }
-  fmt::print("folder    {}\nframes    {} made, {} kept\nspacing   {:.6g} m, {}\n", s.folder.string(), s.n_made, s.n_kept, s.spacing,
-             s.spacing_is_estimated ? "estimated" : a.spacing ? "as given" : "from the files");
+  fmt::print("folder    {}\nframes    {} made, {} kept\nspacing   {:.6g} m, {}\n", s.folder.string(), s.n_made,
+             s.n_kept, s.spacing,
+             s.spacing_is_estimated ? "estimated"
+             : a.spacing            ? "as given"
+                                    : "from the files");
 }
 
 bool is_scene(const std::vector<std::string>& names) {
@@ -151,7 +165,9 @@ bool is_scene(const std::vector<std::string>& names) {
 
 /// The option table.
 void add_common_options(CLI::App& command, SceneOptions& o, bool makes_frames) {
-  command.add_option("--set", o.overrides, "set a key of the scene: key.path=value, any number of times")->take_all()->allow_extra_args(false);
+  command.add_option("--set", o.overrides, "set a key of the scene: key.path=value, any number of times")
+      ->take_all()
+      ->allow_extra_args(false);
   command.add_option("--threads", o.threads, "threads to use; by default all")->check(CLI::Range(1, 4096));
   if (!makes_frames) return;
   command.add_option("-o,--output", o.folder, "folder for the results; by default out/<name of the shot>");
@@ -189,23 +205,30 @@ void add_bench(CLI::App& app, BenchOptions& o, std::function<void()>& work) {
     });
     return command;
   };
-  for (CLI::App* command : {add("step", "particle-steps a second of a full melting step", [&o] { print_step_bench(o.n_particles, o.json); }),
-                            add("terms", "what each term of a scene costs", [&o] { print_terms_bench(o.n_particles, o.json); }),
-                            add("pairs", "the pair loops on one core, beside what it can do at best", [&o] { print_pairs_bench(o.n_particles, o.json); })})
-    command->add_option("--particles", o.n_particles, "about how many; 100000 unless said")->check(CLI::Range(std::size_t{100}, std::size_t{100000000}));
+  for (CLI::App* command :
+       {add("step", "particle-steps a second of a full melting step",
+            [&o] { print_step_bench(o.n_particles, o.json); }),
+        add("terms", "what each term of a scene costs", [&o] { print_terms_bench(o.n_particles, o.json); }),
+        add("pairs", "the pair loops on one core, beside what it can do at best",
+            [&o] { print_pairs_bench(o.n_particles, o.json); })})
+    command->add_option("--particles", o.n_particles, "about how many; 100000 unless said")
+        ->check(CLI::Range(std::size_t{100}, std::size_t{100000000}));
   std::vector<std::string> shots;
   for (const ThesisShot& shot : thesis_shots()) shots.push_back(shot.name);
-  add("thesis", "seconds per iteration of the shots of Paiva (2007), table 6.2, beside the table's", [&o] { print_thesis_bench(o.shot, o.json); })
+  add("thesis", "seconds per iteration of the shots of Paiva (2007), table 6.2, beside the table's",
+      [&o] { print_thesis_bench(o.shot, o.json); })
       ->add_option("--shot", o.shot, "this one alone")
       ->check(CLI::IsMember(shots));
 }
 
 void add_picture_options(CLI::App& command, SceneOptions& o) {
-  command.add_option("--look", o.look, "the scene's pictures, or particles as coloured spheres")->check(CLI::IsMember({"beauty", "diagnostic"}));
+  command.add_option("--look", o.look, "the scene's pictures, or particles as coloured spheres")
+      ->check(CLI::IsMember({"beauty", "diagnostic"}));
   command.add_option("--colour-by", o.colour_by, "with --look diagnostic; by default temperature")
       ->check(CLI::IsMember({"temperature", "viscosity", "density", "speed", "pressure"}));
   command.add_option("--colour-range", o.colour_range, "LOW:HIGH of the colours; by default what the frames hold");
-  command.add_option("--surface", o.overlay, "with --look diagnostic, over the particles")->check(CLI::IsMember({"none", "wire", "translucent"}));
+  command.add_option("--surface", o.overlay, "with --look diagnostic, over the particles")
+      ->check(CLI::IsMember({"none", "wire", "translucent"}));
   command.add_option("--sheet", o.sheet, "COLUMNSxROWS: a contact sheet of frames evenly spread over the range");
 }
 
@@ -241,18 +264,30 @@ int run_parsed(int argc, char** argv) {
   SeriesArguments series;
   auto* surface = add("surface", "surfaces of the particles of a shot, or of any particle files", [&] {
     if (!is_scene(series.names)) return print_series(series, o);
-    if (series.spacing || series.attributes) fail("--spacing_m and --attributes are for particle files; a scene's particles have theirs");
+    if (series.spacing || series.attributes)
+      fail("--spacing_m and --attributes are for particle files; a scene's particles have theirs");
     o.scene = series.names.front();
-    run_on_scene(o, [](const Scene& s, const RunOptions& r, Progress& p) { return run_stage(s, Stage::surface, r, p); });
+    run_on_scene(o,
+                 [](const Scene& s, const RunOptions& r, Progress& p) { return run_stage(s, Stage::surface, r, p); });
   });
-  surface->add_option("files", series.names, "scene file (.toml), or particle files (.vdb .ply .xyz .csv): names, or one with # for digits, cloud.####.ply")
+  surface
+      ->add_option("files", series.names,
+                   "scene file (.toml), or particle files (.vdb .ply .xyz .csv): names, or one with # for digits, "
+                   "cloud.####.ply")
       ->required();
-  surface->add_option("--spacing_m", series.spacing, "distance between particles; by default the cache's own, or estimated")->check(CLI::PositiveNumber);
-  surface->add_option("--attributes", series.attributes, "to carry over: v, temperature, viscosity; by default all that are there")->delimiter(',');
+  surface
+      ->add_option("--spacing_m", series.spacing,
+                   "distance between particles; by default the cache's own, or estimated")
+      ->check(CLI::PositiveNumber);
+  surface
+      ->add_option("--attributes", series.attributes,
+                   "to carry over: v, temperature, viscosity; by default all that are there")
+      ->delimiter(',');
   add_common_options(*surface, o, true);
   add_stage("render", "pictures of the surfaces in the folder", Stage::render);
   add_scene_options(*add("check", "validate a scene and tell what it will take", [&] { print_check(o); }), o, false);
-  add("info", "what a particle cache or cloud, checkpoint, surface or mesh holds", [&] { fmt::print("{}", describe_file(file)); })
+  add("info", "what a particle cache or cloud, checkpoint, surface or mesh holds",
+      [&] { fmt::print("{}", describe_file(file)); })
       ->add_option("file", file, "the file")
       ->required();
   add_bench(app, bench, work);
@@ -277,7 +312,9 @@ int run_command_line(int argc, char** argv) {
   };
   try {
     if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma"))
-      throw Error("this machine's processor has no AVX2 and FMA instructions, which smelt needs (any x86 processor since about 2014 has)");
+      throw Error(
+          "this machine's processor has no AVX2 and FMA instructions, which smelt needs (any x86 processor since about "
+          "2014 has)");
     install_signal_handlers();
     return run_parsed(argc, argv);
   } catch (const DivergedError& error) {

@@ -1,12 +1,12 @@
 #include "cli/terminal_progress.h"
 
 #include <fmt/format.h>
-#include <sys/ioctl.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
 #include <cstdio>
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 namespace smelt {
 
@@ -22,7 +22,8 @@ void request_stop(int signal) {
 
 std::string clock_text(double seconds) {
   const long s = std::max(0L, static_cast<long>(seconds + 0.5));
-  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60) : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
+  return s < 3600 ? fmt::format("{}:{:02}", s / 60, s % 60)
+                  : fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60);
 }
 
 std::size_t terminal_width() {
@@ -64,8 +65,9 @@ void TerminalProgress::update(const ProgressState& state) {
   const std::string eta = done > 1e-4 && elapsed > 0.5 ? clock_text(elapsed / done * (1.0 - fraction)) : "--:--";
   constexpr int bar_width = 24;
   const int filled = static_cast<int>(fraction * bar_width);
-  std::string line = fmt::format("{:<8} [{:=<{}}{:<{}}] frame {}/{}  {}  ETA {}", state.stage, "", filled, filled < bar_width ? ">" : "",
-                                 bar_width - filled, state.frame, state.last_frame, state.details, eta);
+  std::string line =
+      fmt::format("{:<8} [{:=<{}}{:<{}}] frame {}/{}  {}  ETA {}", state.stage, "", filled,
+                  filled < bar_width ? ">" : "", bar_width - filled, state.frame, state.last_frame, state.details, eta);
   line.resize(std::min(line.size(), terminal_width() - 1));
   fmt::print(stderr, "\r\033[K{}", line);
   std::fflush(stderr);

@@ -8,8 +8,8 @@
 
 namespace smelt {
 
-/// From now on SIGINT and SIGTERM ask the run to stop (a second one ends it at once), and a file that grows past the system's limit is
-/// an error of the writer instead of a signal.
+/// From now on SIGINT and SIGTERM ask the run to stop (a second one ends it at once), and a file that grows past the
+/// system's limit is an error of the writer instead of a signal.
 void install_signal_handlers();
 
 /// Draws `stage [=====>    ] frame 12/96  step 40 dt 2.8e-04 s  ETA 1:23` on stderr where that is a terminal.

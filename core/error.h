@@ -16,8 +16,8 @@ class Error : public std::runtime_error {
   explicit Error(const std::string& message) : std::runtime_error(message) {}
 };
 
-/// The simulation went wrong: NaN, an escaped particle, a collapsed time step. The message names the particle, the term and
-/// the time (exit code 4).
+/// The simulation went wrong: NaN, an escaped particle, a collapsed time step. The message names the particle, the term
+/// and the time (exit code 4).
 class DivergedError : public std::runtime_error {
  public:
   explicit DivergedError(const std::string& message) : std::runtime_error(message) {}
@@ -44,13 +44,13 @@ template <typename... Args>
 }  // namespace smelt
 
 /// Our own invariant: throws InternalError with both values. `CHECK_EQ(a, b)`, `CHECK_LT(a, b)`, ...
-#define SMELT_CHECK_OP(a, op, b)                                                                                   \
-  do {                                                                                                             \
-    const auto& smelt_check_a = (a);                                                                               \
-    const auto& smelt_check_b = (b);                                                                               \
-    if (!(smelt_check_a op smelt_check_b))                                                                         \
-      throw ::smelt::InternalError(fmt::format("{}:{}: CHECK({} {} {}) failed: {} against {}", __FILE__, __LINE__, \
-                                               #a, #op, #b, smelt_check_a, smelt_check_b));                        \
+#define SMELT_CHECK_OP(a, op, b)                                                                                       \
+  do {                                                                                                                 \
+    const auto& smelt_check_a = (a);                                                                                   \
+    const auto& smelt_check_b = (b);                                                                                   \
+    if (!(smelt_check_a op smelt_check_b))                                                                             \
+      throw ::smelt::InternalError(fmt::format("{}:{}: CHECK({} {} {}) failed: {} against {}", __FILE__, __LINE__, #a, \
+                                               #op, #b, smelt_check_a, smelt_check_b));                                \
   } while (false)
 #define CHECK_EQ(a, b) SMELT_CHECK_OP(a, ==, b)
 #define CHECK_NE(a, b) SMELT_CHECK_OP(a, !=, b)

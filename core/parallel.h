@@ -18,7 +18,8 @@ template <typename Body>
 void parallel_blocks(std::size_t n, const Body& body, std::size_t grain = block_size) {
   tbb::parallel_for(
       tbb::blocked_range<std::size_t>(0, n, grain),
-      [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); }, tbb::simple_partitioner());
+      [&](const tbb::blocked_range<std::size_t>& range) { body(range.begin(), range.end()); },
+      tbb::simple_partitioner());
 }
 
 /// Calls body(i) for i in [0, n).

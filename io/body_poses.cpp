@@ -11,10 +11,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json to_json(const Vec3& v) { return {v[0], v[1], v[2]}; }
+ordered_json to_json(const Vec3& v) {
+  return {v[0], v[1], v[2]};
+}
 
 Vec3 to_vector(const ordered_json& json) {
-  if (!json.is_array() || json.size() != 3) throw nlohmann::json::other_error::create(501, "three numbers are wanted", nullptr);
+  if (!json.is_array() || json.size() != 3)
+    throw nlohmann::json::other_error::create(501, "three numbers are wanted", nullptr);
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
 
@@ -43,7 +46,8 @@ std::vector<BodyPose> read_body_poses(const std::filesystem::path& path) {
     for (const ordered_json& entry : root.at("bodies")) {
       BodyPose body;
       body.collider = entry.at("collider").get<int>();
-      for (int row = 0; row < 3; ++row) body.pose.rotation.row(row) = to_vector(entry.at("rotation").at(static_cast<std::size_t>(row)));
+      for (int row = 0; row < 3; ++row)
+        body.pose.rotation.row(row) = to_vector(entry.at("rotation").at(static_cast<std::size_t>(row)));
       body.pose.translation = to_vector(entry.at("translation_m"));
       body.centre = to_vector(entry.at("centre_m"));
       body.velocity = to_vector(entry.at("velocity_m_s"));
@@ -51,7 +55,8 @@ std::vector<BodyPose> read_body_poses(const std::filesystem::path& path) {
       bodies.push_back(body);
     }
   } catch (const nlohmann::json::exception& error) {
-    fail("{}: not a file of rigid bodies as smelt writes it ({}); simulate the frame again", path.string(), error.what());
+    fail("{}: not a file of rigid bodies as smelt writes it ({}); simulate the frame again", path.string(),
+         error.what());
   }
   return bodies;
 }

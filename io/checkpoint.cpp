@@ -41,7 +41,8 @@ class ByteReader {
   void array(std::vector<T>& values) {
     std::uint64_t n = 0;
     value(n);
-    if (n > bytes_.size() / sizeof(T)) fail("{}: damaged checkpoint: an array of {} entries does not fit in it", path_, n);
+    if (n > bytes_.size() / sizeof(T))
+      fail("{}: damaged checkpoint: an array of {} entries does not fit in it", path_, n);
     values.resize(n);
     if (n != 0) std::memcpy(static_cast<void*>(values.data()), take(n * sizeof(T)), n * sizeof(T));
   }
@@ -68,7 +69,8 @@ void write_checkpoint(const std::filesystem::path& path, const Checkpoint& check
   writer.value(checkpoint.scene_hash);
   for_each_array(checkpoint.particles, [&](const auto& values) { writer.array(values); });
   writer.value(checkpoint.account.next_id);
-  for (const auto* counts : {&checkpoint.account.initial, &checkpoint.account.removed, &checkpoint.account.entered}) writer.array(*counts);
+  for (const auto* counts : {&checkpoint.account.initial, &checkpoint.account.removed, &checkpoint.account.entered})
+    writer.array(*counts);
   writer.array(checkpoint.bodies);
   writer.value(hash_bytes(writer.bytes));
   write_file_atomically(path, writer.bytes);
@@ -91,7 +93,8 @@ Checkpoint read_checkpoint(const std::filesystem::path& path) {
   reader.value(checkpoint.scene_hash);
   for_each_array(checkpoint.particles, [&](auto& values) { reader.array(values); });
   reader.value(checkpoint.account.next_id);
-  for (auto* counts : {&checkpoint.account.initial, &checkpoint.account.removed, &checkpoint.account.entered}) reader.array(*counts);
+  for (auto* counts : {&checkpoint.account.initial, &checkpoint.account.removed, &checkpoint.account.entered})
+    reader.array(*counts);
   reader.array(checkpoint.bodies);
   return checkpoint;
 }

@@ -11,9 +11,9 @@
 namespace smelt {
 
 struct Checkpoint {
-  std::int32_t frame = 0;            ///< the finished frame whose state this is
-  double time = 0.0;                 ///< [s]
-  std::uint64_t scene_hash = 0;      ///< of what the simulation depends on
+  std::int32_t frame = 0;        ///< the finished frame whose state this is
+  double time = 0.0;             ///< [s]
+  std::uint64_t scene_hash = 0;  ///< of what the simulation depends on
   Particles<3> particles;
   ParticleAccount account;
   std::vector<BodyState<3>> bodies;  ///< rigid bodies, in the order of their colliders

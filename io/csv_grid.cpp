@@ -5,7 +5,8 @@
 namespace smelt {
 
 HeightField read_csv_grid(const std::filesystem::path& path, const HeightScale& scale) {
-  if (!scale.cell) fail("{}: a .csv file does not say how far apart its heights are; give [collider.terrain] cell_m", path.string());
+  if (!scale.cell)
+    fail("{}: a .csv file does not say how far apart its heights are; give [collider.terrain] cell_m", path.string());
   const std::string text = read_file(path);
   std::string_view rest = text;
   HeightField field;
@@ -16,11 +17,12 @@ HeightField read_csv_grid(const std::filesystem::path& path, const HeightScale& 
     if (begin == std::string_view::npos || line[begin] == '#') continue;
     std::size_t column = 0;
     for (std::string_view word; !(word = take_word(line, " \t,;")).empty(); ++column)
-      field.height.push_back(scale.factor * to_number(word, fmt::format("{}:{}: row {}, column {}", path.string(), line_number,
-                                                                        field.n_rows + 1, column + 1)));
+      field.height.push_back(scale.factor * to_number(word, fmt::format("{}:{}: row {}, column {}", path.string(),
+                                                                        line_number, field.n_rows + 1, column + 1)));
     if (field.n_rows == 0) field.n_columns = column;
     if (column != field.n_columns)
-      fail("{}:{}: row {} has {} heights, the first row {}", path.string(), line_number, field.n_rows + 1, column, field.n_columns);
+      fail("{}:{}: row {} has {} heights, the first row {}", path.string(), line_number, field.n_rows + 1, column,
+           field.n_columns);
     ++field.n_rows;
   }
   return field;

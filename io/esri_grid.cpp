@@ -19,7 +19,8 @@ struct Header {
 /// Whether the line was one of the header's.
 bool read_header_line(std::string_view line, const std::string& where, Header& header) {
   std::string key(take_word(line, blanks));
-  std::transform(key.begin(), key.end(), key.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(key.begin(), key.end(), key.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (key.empty() || !std::isalpha(static_cast<unsigned char>(key[0])) || key == "nan" || key == "inf") return false;
   const auto number = [&] { return to_number(take_word(line, blanks), where + ": " + key); };
   if (key == "ncols")
@@ -31,14 +32,17 @@ bool read_header_line(std::string_view line, const std::string& where, Header& h
   else if (key == "nodata_value")
     header.no_data = number();
   else if (key != "xllcorner" && key != "yllcorner" && key != "xllcenter" && key != "yllcenter")
-    fail("{}: \"{}\" is no key of an ESRI ASCII grid; known are ncols, nrows, xllcorner, yllcorner, xllcenter, yllcenter, cellsize, NODATA_value",
-         where, key);
+    fail(
+        "{}: \"{}\" is no key of an ESRI ASCII grid; known are ncols, nrows, xllcorner, yllcorner, xllcenter, "
+        "yllcenter, cellsize, NODATA_value",
+        where, key);
   return true;
 }
 
 std::size_t to_count(const std::optional<double>& value, const char* key, const std::string& path) {
   if (!value) fail("{}: the header lacks {}; is it an ESRI ASCII grid?", path, key);
-  if (!(*value >= 1.0 && *value <= 1e5 && *value == std::floor(*value))) fail("{}: {} must be a whole number from 1 to 100000, is {}", path, key, *value);
+  if (!(*value >= 1.0 && *value <= 1e5 && *value == std::floor(*value)))
+    fail("{}: {} must be a whole number from 1 to 100000, is {}", path, key, *value);
   return static_cast<std::size_t>(*value);
 }
 
@@ -55,7 +59,8 @@ HeightField read_esri_grid(const std::filesystem::path& path, const HeightScale&
   do {
     line = take_line(rest);
     ++line_number;
-  } while ((line.find_first_not_of(blanks) == std::string_view::npos || read_header_line(line, where(), header)) && !rest.empty());
+  } while ((line.find_first_not_of(blanks) == std::string_view::npos || read_header_line(line, where(), header)) &&
+           !rest.empty());
 
   HeightField field;
   field.n_columns = to_count(header.n_columns, "ncols", path.string());
@@ -67,15 +72,18 @@ HeightField read_esri_grid(const std::filesystem::path& path, const HeightScale&
       const std::string_view word = take_word(line, blanks);
       if (word.empty() && column == field.n_columns) break;
       if (word.empty() || column == field.n_columns)
-        fail("{}: row {} has {} {} heights; ncols says {}", where(), row + 1, word.empty() ? "only" : "more than", column, field.n_columns);
+        fail("{}: row {} has {} {} heights; ncols says {}", where(), row + 1, word.empty() ? "only" : "more than",
+             column, field.n_columns);
       const double value = to_number(word, fmt::format("{}: row {}, column {}", where(), row + 1, column + 1));
       if (header.no_data && value == *header.no_data)
-        fail("{}: row {}, column {}: NODATA ({}); a terrain has no holes, fill the gap in the data", where(), row + 1, column + 1, word);
+        fail("{}: row {}, column {}: NODATA ({}); a terrain has no holes, fill the gap in the data", where(), row + 1,
+             column + 1, word);
       field.height.push_back(scale.factor * value);
     }
     if (row + 1 == field.n_rows) break;
     do {
-      if (rest.empty()) fail("{}: the file ends after {} rows of heights; nrows says {}", where(), row + 1, field.n_rows);
+      if (rest.empty())
+        fail("{}: the file ends after {} rows of heights; nrows says {}", where(), row + 1, field.n_rows);
       line = take_line(rest);
       ++line_number;
     } while (line.find_first_not_of(blanks) == std::string_view::npos);

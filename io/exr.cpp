@@ -11,7 +11,6 @@
 #include <OpenEXR/ImfIO.h>
 #include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
-
 #include <algorithm>
 #include <string_view>
 
@@ -50,7 +49,8 @@ half to_half(float value) {
 
 bool is_hdr(const std::filesystem::path& path) {
   std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
   return extension == ".hdr" || extension == ".pic";
 }
 
@@ -65,7 +65,8 @@ void write_exr(const std::filesystem::path& path, const LayeredImage& image) {
   halves.reserve(image.channels.size());
   for (const ImageChannel& channel : image.channels) {
     if (channel.values.size() != n || n == 0)
-      fail("{}: the channel {} has {} values for {} x {} pixels", path.string(), channel.name, channel.values.size(), image.width, image.height);
+      fail("{}: the channel {} has {} values for {} x {} pixels", path.string(), channel.name, channel.values.size(),
+           image.width, image.height);
     const bool short_float = is_colour(channel.name);
     const Imf::PixelType type = short_float ? Imf::HALF : Imf::FLOAT;
     header.channels().insert(channel.name, Imf::Channel(type));
@@ -101,7 +102,8 @@ LayeredImage read_exr(const std::filesystem::path& path) {
     Imf::FrameBuffer buffer;
     const std::size_t row = sizeof(float) * static_cast<std::size_t>(image.width);
     for (ImageChannel& channel : image.channels) {
-      char* first = reinterpret_cast<char*>(channel.values.data()) - static_cast<std::ptrdiff_t>(window.min.y) * static_cast<std::ptrdiff_t>(row) -
+      char* first = reinterpret_cast<char*>(channel.values.data()) -
+                    static_cast<std::ptrdiff_t>(window.min.y) * static_cast<std::ptrdiff_t>(row) -
                     static_cast<std::ptrdiff_t>(window.min.x) * static_cast<std::ptrdiff_t>(sizeof(float));
       buffer.insert(channel.name, Imf::Slice(Imf::FLOAT, first, sizeof(float), row));
     }
@@ -119,18 +121,22 @@ RadianceImage read_radiance(const std::filesystem::path& path) {
     image = read_radiance_hdr(path);
   } else {
     const LayeredImage layers = read_exr(path);
-    image = {layers.width, layers.height, std::vector<Vec3f>(static_cast<std::size_t>(layers.width) * static_cast<std::size_t>(layers.height))};
+    image = {layers.width, layers.height,
+             std::vector<Vec3f>(static_cast<std::size_t>(layers.width) * static_cast<std::size_t>(layers.height))};
     for (int c = 0; c < 3; ++c) {
       const std::string name(1, "RGB"[c]);
-      const auto channel = std::find_if(layers.channels.begin(), layers.channels.end(), [&](const ImageChannel& k) { return k.name == name; });
-      if (channel == layers.channels.end()) fail("{}: has no channel {}; a panorama needs R, G and B", path.string(), name);
+      const auto channel = std::find_if(layers.channels.begin(), layers.channels.end(),
+                                        [&](const ImageChannel& k) { return k.name == name; });
+      if (channel == layers.channels.end())
+        fail("{}: has no channel {}; a panorama needs R, G and B", path.string(), name);
       for (std::size_t i = 0; i < image.pixels.size(); ++i) image.pixels[i][c] = channel->values[i];
     }
   }
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
     if (!image.pixels[i].allFinite() || image.pixels[i].minCoeff() < 0.0f)
-      fail("{}: pixel ({}, {}) is ({}, {}, {}); light is finite and not negative", path.string(), i % static_cast<std::size_t>(image.width),
-           i / static_cast<std::size_t>(image.width), image.pixels[i].x(), image.pixels[i].y(), image.pixels[i].z());
+      fail("{}: pixel ({}, {}) is ({}, {}, {}); light is finite and not negative", path.string(),
+           i % static_cast<std::size_t>(image.width), i / static_cast<std::size_t>(image.width), image.pixels[i].x(),
+           image.pixels[i].y(), image.pixels[i].z());
   return image;
 }
 

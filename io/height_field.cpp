@@ -17,7 +17,8 @@ HeightField read_height_field(const std::filesystem::path& path, const HeightSca
   else
     field = read_height_png(path, scale);
   if (field.n_columns < 2 || field.n_rows < 2)
-    fail("{}: a terrain needs at least 2 x 2 heights, this file has {} x {}", path.string(), field.n_columns, field.n_rows);
+    fail("{}: a terrain needs at least 2 x 2 heights, this file has {} x {}", path.string(), field.n_columns,
+         field.n_rows);
   if (!(field.cell > 0.0)) fail("{}: the distance between heights must be > 0, is {} m", path.string(), field.cell);
   return field;
 }

@@ -19,12 +19,13 @@ struct HeightScale {
 /// Whether the name ends as that of a height field does.
 bool is_height_field(const std::filesystem::path& path);
 
-/// Reads a height field of any of the formats. The first row is the northern one. Throws Error with file, line or row and column for what
-/// is missing, no number, not finite or marked as NODATA, for rows of unequal length, and for a damaged picture.
+/// Reads a height field of any of the formats. The first row is the northern one. Throws Error with file, line or row
+/// and column for what is missing, no number, not finite or marked as NODATA, for rows of unequal length, and for a
+/// damaged picture.
 HeightField read_height_field(const std::filesystem::path& path, const HeightScale& scale);
 
-/// ESRI ASCII grid: ncols, nrows, corner or centre, cellsize, NODATA_value, then a line of heights for each row. Where on the earth it lies
-/// is left aside.
+/// ESRI ASCII grid: ncols, nrows, corner or centre, cellsize, NODATA_value, then a line of heights for each row. Where
+/// on the earth it lies is left aside.
 HeightField read_esri_grid(const std::filesystem::path& path, const HeightScale& scale);
 
 /// A line of numbers for each row, parted by commas, semicolons, tabs or blanks; lines that begin with # are left out.

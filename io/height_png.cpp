@@ -34,7 +34,8 @@ void take_bytes(png_structp png, png_bytep out, std::size_t n) {
 
 void ignore_warning(png_structp, png_const_charp) {}
 
-/// Decodes into libpng's own rows. Nothing here has a destructor: libpng leaves by longjmp. Returns whether it went well.
+/// Decodes into libpng's own rows. Nothing here has a destructor: libpng leaves by longjmp. Returns whether it went
+/// well.
 bool decode(png_structp png, png_infop info, Source* source) {
   if (setjmp(png_jmpbuf(png)) != 0) return false;
   png_set_read_fn(png, source, take_bytes);
@@ -45,7 +46,8 @@ bool decode(png_structp png, png_infop info, Source* source) {
 }  // namespace
 
 HeightField read_height_png(const std::filesystem::path& path, const HeightScale& scale) {
-  if (!scale.cell) fail("{}: a picture does not say how far apart its heights are; give [collider.terrain] cell_m", path.string());
+  if (!scale.cell)
+    fail("{}: a picture does not say how far apart its heights are; give [collider.terrain] cell_m", path.string());
   const std::string bytes = read_file(path);
   Source source{bytes.data(), bytes.size(), {}};
   png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &source, keep_message, ignore_warning);
@@ -71,7 +73,9 @@ HeightField read_height_png(const std::filesystem::path& path, const HeightScale
   }
   png_destroy_read_struct(&png, &info, nullptr);
   if (!sound) fail("{}: cannot be read as a PNG: {}; write the file again", path.string(), source.message);
-  if (colour != PNG_COLOR_TYPE_GRAY) fail("{}: a height field is a grey picture, this one is coloured; write one grey channel, of 16 bits best", path.string());
+  if (colour != PNG_COLOR_TYPE_GRAY)
+    fail("{}: a height field is a grey picture, this one is coloured; write one grey channel, of 16 bits best",
+         path.string());
   return field;
 }
 

@@ -33,8 +33,10 @@ inline std::string_view take_word(std::string_view& line, std::string_view separ
 inline double to_number(std::string_view word, const std::string& where) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size()) fail("{}: expected a number, found \"{}\"", where, word);
-  if (!std::isfinite(value)) fail("{}: the height is {}; a terrain's must be finite, fill the gap in the data", where, word);
+  if (error != std::errc() || end != word.data() + word.size())
+    fail("{}: expected a number, found \"{}\"", where, word);
+  if (!std::isfinite(value))
+    fail("{}: the height is {}; a terrain's must be finite, fill the gap in the data", where, word);
   return value;
 }
 

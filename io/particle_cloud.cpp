@@ -27,11 +27,12 @@ struct Table {
 
 std::string lower_case(std::string_view text) {
   std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return out;
 }
 
-// --------------------------------------------------------------------------------------------------------------------- text
+// ---------------------------------------------------------------------------------------------------------------- text
 
 std::string_view take_line(std::string_view& text) {
   const std::size_t end = std::min(text.find('\n'), text.size());
@@ -85,15 +86,16 @@ Table read_text_table(const std::filesystem::path& path, std::vector<std::string
       continue;
     }
     if (words.size() != table.names.size())
-      fail("{}:{}: particle {} has {} numbers; {} are expected ({})", path.string(), line_number, table.n_rows(), words.size(), table.names.size(),
-           fmt::join(table.names, ", "));
+      fail("{}:{}: particle {} has {} numbers; {} are expected ({})", path.string(), line_number, table.n_rows(),
+           words.size(), table.names.size(), fmt::join(table.names, ", "));
     const std::size_t row = table.n_rows();
-    for (std::size_t c = 0; c < words.size(); ++c) table.columns[c].push_back(to_number(words[c], path, line_number, row));
+    for (std::size_t c = 0; c < words.size(); ++c)
+      table.columns[c].push_back(to_number(words[c], path, line_number, row));
   }
   return table;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------- PLY
+// ----------------------------------------------------------------------------------------------------------------- PLY
 
 template <typename T>
 double from_bytes(const char* at, bool swap) {
@@ -116,10 +118,12 @@ double read_value(const char* at, std::string_view type, bool swap) {
 }
 
 [[noreturn]] void fail_on_end(const std::filesystem::path& path, std::size_t particle, std::uint64_t count) {
-  fail("{}: ends in particle {} of the {} that its header promises: the file is truncated; write it again", path.string(), particle, count);
+  fail("{}: ends in particle {} of the {} that its header promises: the file is truncated; write it again",
+       path.string(), particle, count);
 }
 
-void read_binary_rows(Table& table, const std::filesystem::path& path, std::string_view body, const PlyElement& element, bool swap) {
+void read_binary_rows(Table& table, const std::filesystem::path& path, std::string_view body, const PlyElement& element,
+                      bool swap) {
   std::size_t row_size = 0;
   for (const PlyProperty& p : element.properties) row_size += p.size;
   if (row_size == 0) return;
@@ -131,7 +135,8 @@ void read_binary_rows(Table& table, const std::filesystem::path& path, std::stri
   }
 }
 
-void read_ascii_rows(Table& table, const std::filesystem::path& path, std::string_view body, const PlyElement& element) {
+void read_ascii_rows(Table& table, const std::filesystem::path& path, std::string_view body,
+                     const PlyElement& element) {
   for (std::uint64_t row = 0; row < element.count; ++row)
     for (std::size_t c = 0; c < element.properties.size(); ++c) {
       constexpr std::string_view blank = " \t\r\n";
@@ -155,7 +160,8 @@ Table read_ply_table(const std::filesystem::path& path) {
   const PlyElement& element = header.elements.front();
   Table table;
   for (const PlyProperty& p : element.properties) {
-    if (p.length_size > 0) fail("{}: the property `{}` of its vertices is a list; numbers are allowed", path.string(), p.name);
+    if (p.length_size > 0)
+      fail("{}: the property `{}` of its vertices is a list; numbers are allowed", path.string(), p.name);
     table.names.push_back(lower_case(p.name));
   }
   table.columns.resize(table.names.size());
@@ -163,16 +169,18 @@ Table read_ply_table(const std::filesystem::path& path) {
   if (header.encoding == PlyHeader::Encoding::ascii)
     read_ascii_rows(table, path, body, element);
   else
-    read_binary_rows(table, path, body, element, (header.encoding == PlyHeader::Encoding::big_endian) != (std::endian::native == std::endian::big));
+    read_binary_rows(table, path, body, element,
+                     (header.encoding == PlyHeader::Encoding::big_endian) != (std::endian::native == std::endian::big));
   return table;
 }
 
-// ------------------------------------------------------------------------------------------------------------------- fields
+// -------------------------------------------------------------------------------------------------------------- fields
 
 /// Takes columns out of a table by any of the names that programs give them.
 class Columns {
  public:
-  Columns(const std::filesystem::path& path, Table table) : path_(path), table_(std::move(table)), used_(table_.names.size()) {}
+  Columns(const std::filesystem::path& path, Table table)
+      : path_(path), table_(std::move(table)), used_(table_.names.size()) {}
 
   const std::vector<double>* find(std::initializer_list<const char*> names) {
     for (const char* name : names)
@@ -188,7 +196,8 @@ class Columns {
     const std::vector<double>* column = find({name});
     if (!column) return {};
     for (std::size_t i = 0; i < column->size(); ++i)
-      if (!std::isfinite((*column)[i])) fail("{}: {} of particle {} is {}: it must be finite", path_.string(), name, i, (*column)[i]);
+      if (!std::isfinite((*column)[i]))
+        fail("{}: {} of particle {} is {}: it must be finite", path_.string(), name, i, (*column)[i]);
     return std::vector<float>(column->begin(), column->end());
   }
 
@@ -198,12 +207,15 @@ class Columns {
     for (int a = 0; a < 3; ++a) c[a] = find(names[a]);
     if (!c[0] && !c[1] && !c[2]) return {};
     for (int a = 0; a < 3; ++a)
-      if (!c[a]) fail("{}: has no column `{}` for the {}; it has {}", path_.string(), *names[a].begin(), what, fmt::join(table_.names, ", "));
+      if (!c[a])
+        fail("{}: has no column `{}` for the {}; it has {}", path_.string(), *names[a].begin(), what,
+             fmt::join(table_.names, ", "));
     std::vector<Vec3> out(table_.n_rows());
     for (std::size_t i = 0; i < out.size(); ++i) {
       out[i] = Vec3((*c[0])[i], (*c[1])[i], (*c[2])[i]);
       if (!out[i].allFinite())
-        fail("{}: the {} of particle {} is ({}, {}, {}): it must be finite", path_.string(), what, i, out[i][0], out[i][1], out[i][2]);
+        fail("{}: the {} of particle {} is ({}, {}, {}): it must be finite", path_.string(), what, i, out[i][0],
+             out[i][1], out[i][2]);
     }
     return out;
   }
@@ -240,14 +252,16 @@ ParticleCloud read_particle_cloud(const std::filesystem::path& path) {
   cloud.position = columns.vector("position", {{{"x", "position_x", "points:0", "points_0", "position:0", "p:0"},
                                                 {"y", "position_y", "points:1", "points_1", "position:1", "p:1"},
                                                 {"z", "position_z", "points:2", "points_2", "position:2", "p:2"}}});
-  if (cloud.position.empty()) fail("{}: has no columns x, y, z; it has {}", path.string(), fmt::join(columns.names(), ", "));
+  if (cloud.position.empty())
+    fail("{}: has no columns x, y, z; it has {}", path.string(), fmt::join(columns.names(), ", "));
   for (const Vec3& v : columns.vector("velocity", {{{"vx", "v_x", "velocity_x", "v:0", "velocity:0", "velocity_0"},
                                                     {"vy", "v_y", "velocity_y", "v:1", "velocity:1", "velocity_1"},
                                                     {"vz", "v_z", "velocity_z", "v:2", "velocity:2", "velocity_2"}}}))
     cloud.velocity.push_back(v.cast<float>());
   cloud.density = columns.scalar("density");
   for (std::size_t i = 0; i < cloud.density.size(); ++i)
-    if (!(cloud.density[i] > 0.0f)) fail("{}: the density of particle {} is {} kg/m3: it must be positive", path.string(), i, cloud.density[i]);
+    if (!(cloud.density[i] > 0.0f))
+      fail("{}: the density of particle {} is {} kg/m3: it must be positive", path.string(), i, cloud.density[i]);
   cloud.temperature = columns.scalar("temperature");
   cloud.viscosity = columns.scalar("viscosity");
   cloud.unused = columns.unused();

@@ -32,8 +32,8 @@ class PngEncoder {
   std::string encode(const ImageRgb<Channel>& image) {
     constexpr int bits = 8 * static_cast<int>(sizeof(Channel));
     png_set_write_fn(png_, &bytes_, append, [](png_structp) {});
-    png_set_IHDR(png_, info_, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), bits, PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png_, info_, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height), bits,
+                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_sRGB(png_, info_, PNG_sRGB_INTENT_PERCEPTUAL);
     // Frames are written once and read by people: speed before the last few per cent of size.
     png_set_compression_level(png_, 1);
@@ -41,7 +41,8 @@ class PngEncoder {
     png_write_info(png_, info_);
     if constexpr (bits == 16) png_set_swap(png_);
     for (int y = 0; y < image.height; ++y)
-      png_write_row(png_, reinterpret_cast<png_const_bytep>(&image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width)]));
+      png_write_row(png_, reinterpret_cast<png_const_bytep>(
+                              &image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width)]));
     png_write_end(png_, nullptr);
     return std::move(bytes_);
   }
@@ -64,7 +65,8 @@ template <typename Channel>
 void write_rgb(const std::filesystem::path& path, const ImageRgb<Channel>& image) {
   const std::size_t n = static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   if (image.width < 1 || image.height < 1 || image.pixels.size() != n)
-    fail("{}: an image of {} x {} with {} pixels cannot be written", path.string(), image.width, image.height, image.pixels.size());
+    fail("{}: an image of {} x {} with {} pixels cannot be written", path.string(), image.width, image.height,
+         image.pixels.size());
   static_assert(sizeof(image.pixels[0]) == n_channels * sizeof(Channel));
   write_file_atomically(path, PngEncoder(path).encode(image));
 }

@@ -44,7 +44,8 @@ void read_component_runs(Bytes& bytes, std::vector<Rgbe>& row, const std::filesy
       const std::size_t count = bytes.next();
       const bool run = count > 128;
       const std::size_t n = run ? count - 128 : count;
-      if (n == 0 || x + n > row.size()) fail("{}: a run goes past the end of its row; the file is damaged", path.string());
+      if (n == 0 || x + n > row.size())
+        fail("{}: a run goes past the end of its row; the file is damaged", path.string());
       const std::uint8_t repeated = run ? bytes.next() : std::uint8_t{0};
       for (std::size_t k = 0; k < n; ++k) row[x++][component] = run ? repeated : bytes.next();
     }
@@ -57,7 +58,8 @@ void read_pixels(Bytes& bytes, std::vector<Rgbe>& row, const std::filesystem::pa
     const Rgbe pixel = bytes.next_pixel();
     if (pixel[0] == 1 && pixel[1] == 1 && pixel[2] == 1) {
       const std::size_t n = static_cast<std::size_t>(pixel[3]) << shift;
-      if (x == 0 || shift > 16 || x + n > row.size()) fail("{}: a run goes past the end of its row; the file is damaged", path.string());
+      if (x == 0 || shift > 16 || x + n > row.size())
+        fail("{}: a run goes past the end of its row; the file is damaged", path.string());
       for (std::size_t k = 0; k < n; ++k, ++x) row[x] = row[x - 1];
       shift += 8;
     } else {
@@ -70,7 +72,8 @@ void read_pixels(Bytes& bytes, std::vector<Rgbe>& row, const std::filesystem::pa
 Vec3f to_radiance(const Rgbe& p) {
   if (p[3] == 0) return Vec3f::Zero();
   const float scale = std::ldexp(1.0f, static_cast<int>(p[3]) - 136);
-  return {(static_cast<float>(p[0]) + 0.5f) * scale, (static_cast<float>(p[1]) + 0.5f) * scale, (static_cast<float>(p[2]) + 0.5f) * scale};
+  return {(static_cast<float>(p[0]) + 0.5f) * scale, (static_cast<float>(p[1]) + 0.5f) * scale,
+          (static_cast<float>(p[2]) + 0.5f) * scale};
 }
 
 }  // namespace
@@ -86,8 +89,8 @@ RadianceImage read_radiance_hdr(const std::filesystem::path& path) {
       fail("{}: has {}; only 32-bit_rle_rgbe is read", path.string(), line);
   RadianceImage image;
   const std::string size = bytes.next_line();
-  if (std::sscanf(size.c_str(), "-Y %d +X %d", &image.height, &image.width) != 2 || image.width < 1 || image.height < 1 || image.width > 65535 ||
-      image.height > 65535)
+  if (std::sscanf(size.c_str(), "-Y %d +X %d", &image.height, &image.width) != 2 || image.width < 1 ||
+      image.height < 1 || image.width > 65535 || image.height > 65535)
     fail("{}: has size \"{}\"; -Y height +X width is read, up to 65535", path.string(), size);
   std::vector<Rgbe> row(static_cast<std::size_t>(image.width));
   for (int y = 0; y < image.height; ++y) {

@@ -15,7 +15,8 @@ std::vector<GridSummary> summarise_vdb(const std::filesystem::path& path) {
     s.grid_class = openvdb::GridBase::gridClassToString(grid->getGridClass());
     s.voxel_size = grid->voxelSize()[0];
     s.n_active = grid->activeVoxelCount();
-    if (const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid)) s.background = static_cast<double>(floats->background());
+    if (const auto floats = openvdb::gridPtrCast<openvdb::FloatGrid>(grid))
+      s.background = static_cast<double>(floats->background());
     if (s.n_active > 0) {
       const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
       for (const openvdb::Coord& corner : {box.min(), box.max()}) {
@@ -24,7 +25,8 @@ std::vector<GridSummary> summarise_vdb(const std::filesystem::path& path) {
       }
     }
     for (auto meta = grid->beginMeta(); meta != grid->endMeta(); ++meta)
-      if (meta->first != "name" && meta->first != "class" && !meta->first.starts_with("file_")) s.metadata.emplace_back(meta->first, meta->second->str());
+      if (meta->first != "name" && meta->first != "class" && !meta->first.starts_with("file_"))
+        s.metadata.emplace_back(meta->first, meta->second->str());
     out.push_back(std::move(s));
   }
   return out;

@@ -83,8 +83,7 @@ Vec3f BlackBodyTable::operator()(float temperature) const {
   const int k = std::clamp(static_cast<int>(place), 0, n_entries - 2);
   const float t = place - static_cast<float>(k);
   const Entry &a = entries_[static_cast<std::size_t>(k)], &b = entries_[static_cast<std::size_t>(k + 1)];
-  return (a.colour + (b.colour - a.colour) * t) *
-         std::exp(a.log_luminance + (b.log_luminance - a.log_luminance) * t);
+  return (a.colour + (b.colour - a.colour) * t) * std::exp(a.log_luminance + (b.log_luminance - a.log_luminance) * t);
 }
 
 }  // namespace smelt

@@ -7,13 +7,13 @@
 
 namespace smelt {
 
-/// Planck's law: spectral radiance 2 h c^2 / lambda^5 / (exp(h c / (lambda k T)) - 1) [W m^-3 sr^-1] at `wavelength` [m]
-/// and `temperature` [K], both above 0.
+/// Planck's law: spectral radiance 2 h c^2 / lambda^5 / (exp(h c / (lambda k T)) - 1) [W m^-3 sr^-1] at `wavelength`
+/// [m] and `temperature` [K], both above 0.
 double planck_radiance(double wavelength, double temperature);
 
-/// CIE 1931 colour matching functions (2 degrees) at `wavelength` [m], within 0.035 of the standard's tables: the sums of
-/// Gaussians of [Wyman 2013], and beyond 640 nm, where their x falls off too fast, x from y. Black bodies from 1000 K on
-/// come out within 0.0015 of their chromaticity.
+/// CIE 1931 colour matching functions (2 degrees) at `wavelength` [m], within 0.035 of the standard's tables: the sums
+/// of Gaussians of [Wyman 2013], and beyond 640 nm, where their x falls off too fast, x from y. Black bodies from 1000
+/// K on come out within 0.0015 of their chromaticity.
 Vec3 cie_matching(double wavelength);
 
 /// Luminance [cd/m^2] (683 lm/W) and chromaticity, as CIE XYZ: 683 times the integral of Planck's law with the matching
@@ -29,7 +29,8 @@ class BlackBodyTable {
  public:
   BlackBodyTable();
   /// Linear RGB whose luminance is that of the black body [cd/m^2]. Deep reds lie outside Rec. 709: channels below 0
-  /// are set to 0 and the rest is scaled to the same luminance. Zero below 500 K (less than 1e-8 cd/m^2); 20000 K above.
+  /// are set to 0 and the rest is scaled to the same luminance. Zero below 500 K (less than 1e-8 cd/m^2); 20000 K
+  /// above.
   Vec3f operator()(float temperature) const;
 
  private:

@@ -29,7 +29,8 @@ struct CameraFrame {
     right = forward.cross(camera.up).normalized();
     up = right.cross(forward);
     lens_radius_ = static_cast<float>(0.5 * camera.aperture);
-    focus_ = static_cast<float>(camera.focus_distance > 0.0 ? camera.focus_distance : (camera.target - camera.eye).norm());
+    focus_ =
+        static_cast<float>(camera.focus_distance > 0.0 ? camera.focus_distance : (camera.target - camera.eye).norm());
   }
 
   /// Unit direction through the point (x, y) of the picture in pixels from the top left corner; a pixel's centre is at
@@ -39,8 +40,8 @@ struct CameraFrame {
     return d.normalized().cast<float>();
   }
 
-  /// A ray through a point of the lens, relative to the eye; `direction` is that through the middle of the lens. Rays of
-  /// one `direction` meet on the plane that is sharp.
+  /// A ray through a point of the lens, relative to the eye; `direction` is that through the middle of the lens. Rays
+  /// of one `direction` meet on the plane that is sharp.
   struct LensRay {
     Vec3f origin, direction;
   };

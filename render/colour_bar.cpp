@@ -64,7 +64,8 @@ void draw_colour_bar(ImageRgb8& image, const ColourScale& scale, const ColourMap
   // Room for the longest number to the right of the bar.
   const std::vector<double> ticks = compute_ticks(scale, 6);
   int widest = 0;
-  for (const double tick : ticks) widest = std::max(widest, text_width(tick_text(tick, scale.high - scale.low), letter));
+  for (const double tick : ticks)
+    widest = std::max(widest, text_width(tick_text(tick, scale.high - scale.low), letter));
   const int right = image.width - margin - widest - 5 * letter, left = right - bar_width;
   fill_rectangle(image, left - letter, top - letter, right + letter, bottom + letter, ink);
   for (int y = top; y < bottom; ++y) {
@@ -73,11 +74,14 @@ void draw_colour_bar(ImageRgb8& image, const ColourScale& scale, const ColourMap
   }
   for (const double tick : ticks) {
     const int y = bottom - static_cast<int>(std::lround(scale.place(tick) * bar_height));
-    fill_rectangle(image, right + letter, y - letter / 2, right + 3 * letter, y - letter / 2 + std::max(1, letter / 2 + 1), ink);
-    draw_text(image, right + 5 * letter, y - text_height(letter) / 2, tick_text(tick, scale.high - scale.low), letter, ink);
+    fill_rectangle(image, right + letter, y - letter / 2, right + 3 * letter,
+                   y - letter / 2 + std::max(1, letter / 2 + 1), ink);
+    draw_text(image, right + 5 * letter, y - text_height(letter) / 2, tick_text(tick, scale.high - scale.low), letter,
+              ink);
   }
   const int label = text_width(scale.label, letter);
-  draw_text(image, std::min(left, image.width - margin - label), top - 3 * text_height(letter), scale.label, letter, ink);
+  draw_text(image, std::min(left, image.width - margin - label), top - 3 * text_height(letter), scale.label, letter,
+            ink);
 }
 
 }  // namespace smelt

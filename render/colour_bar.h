@@ -20,8 +20,8 @@ struct ColourScale {
   double place(double value) const;
 };
 
-/// Round values within the scale, in order: steps of 1, 2 or 5 times a power of ten, about `n` of them; on a logarithmic
-/// scale powers of ten, and 2 and 5 times those where that leaves too few.
+/// Round values within the scale, in order: steps of 1, 2 or 5 times a power of ten, about `n` of them; on a
+/// logarithmic scale powers of ten, and 2 and 5 times those where that leaves too few.
 std::vector<double> compute_ticks(const ColourScale& scale, int n);
 
 /// A bar at the right of the picture with ticks and its label, over what is there.

@@ -60,11 +60,14 @@ ColourMap::ColourMap() {
   std::vector<double> length{0.0};
   for (int k = 0; k <= n_fine; ++k) {
     path.push_back(path_lab(static_cast<double>(k) / n_fine));
-    if (k > 0) length.push_back(length.back() + (path[static_cast<std::size_t>(k)] - path[static_cast<std::size_t>(k - 1)]).norm());
+    if (k > 0)
+      length.push_back(length.back() +
+                       (path[static_cast<std::size_t>(k)] - path[static_cast<std::size_t>(k - 1)]).norm());
   }
   for (int k = 0; k < n_; ++k) {
     const double wanted = length.back() * k / (n_ - 1);
-    const auto above = std::clamp<std::size_t>(static_cast<std::size_t>(std::lower_bound(length.begin(), length.end(), wanted) - length.begin()), 1, n_fine);
+    const auto above = std::clamp<std::size_t>(
+        static_cast<std::size_t>(std::lower_bound(length.begin(), length.end(), wanted) - length.begin()), 1, n_fine);
     const double t = (wanted - length[above - 1]) / (length[above] - length[above - 1]);
     const Vec3 lab = path[above - 1] + t * (path[above] - path[above - 1]);
     colours_[static_cast<std::size_t>(k)] = rgb_from_oklab(lab).cwiseMax(0.0).cwiseMin(1.0).cast<float>();

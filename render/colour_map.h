@@ -12,8 +12,8 @@ Vec3 rgb_from_oklab(const Vec3& lab);
 /// Its inverse.
 Vec3 oklab_from_rgb(const Vec3& rgb);
 
-/// From dark violet over teal and green to light yellow: lightness rises evenly and the hue turns evenly, as colourful as a
-/// display can, sampled at equal distances in Oklab. So equal steps of a number look equally large, in grey too.
+/// From dark violet over teal and green to light yellow: lightness rises evenly and the hue turns evenly, as colourful
+/// as a display can, sampled at equal distances in Oklab. So equal steps of a number look equally large, in grey too.
 class ColourMap {
  public:
   ColourMap();

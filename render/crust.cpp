@@ -21,7 +21,8 @@ CrustSample sample_crust(const CrustLook& look, const Vec3f& rest, float solid) 
   const float small_cover = smooth_step(0.0f, width, small.edge);
   sample.cover = large_cover * (1.0f - (1.0f - small_cover) * (0.35f + 0.5f * (1.0f - solid)));
   const float lift = unit_float(large.cell) - 0.5f;
-  sample.height = look.relief * look.plate_m * (0.25f * large_cover * (1.0f + lift) + 0.06f * small_cover + 0.12f * rough);
+  sample.height =
+      look.relief * look.plate_m * (0.25f * large_cover * (1.0f + lift) + 0.06f * small_cover + 0.12f * rough);
   sample.tone = 0.8f * rough + 0.6f * lift;
   return sample;
 }

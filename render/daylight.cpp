@@ -63,8 +63,7 @@ const Vec3 observer(0.0, ground_radius + 100.0, 0.0);
 Vec3 sky_toward(const Vec3& d, const Daylight& day) {
   const double cosine = d.dot(day.to_sun), g = forward_bias;
   const double air_phase = 3.0 / (16.0 * std::numbers::pi) * (1.0 + cosine * cosine);
-  const double aerosol_phase =
-      (1.0 - g * g) / (4.0 * std::numbers::pi * std::pow(1.0 + g * g - 2.0 * g * cosine, 1.5));
+  const double aerosol_phase = (1.0 - g * g) / (4.0 * std::numbers::pi * std::pow(1.0 + g * g - 2.0 * g * cosine, 1.5));
   const double far = leave_sphere(observer, d, air_radius);
   Column before;
   Vec3 sum = Vec3::Zero();

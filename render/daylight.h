@@ -11,9 +11,9 @@ struct Daylight {
 };
 
 /// Radiance of the sky: sunlight scattered once by air (Rayleigh) and aerosols (Henyey-Greenstein, g = 0.76) in a
-/// spherical atmosphere [Nishita 1993], at 680, 550 and 440 nm for red, green and blue; integrated in 24 steps along the
-/// view. Below the horizon the ground, of albedo 0.15, lit by both. Scattering more than once is left out: the real sky
-/// is brighter, most of all near the horizon. A sun straight above, outside the atmosphere, would give a
+/// spherical atmosphere [Nishita 1993], at 680, 550 and 440 nm for red, green and blue; integrated in 24 steps along
+/// the view. Below the horizon the ground, of albedo 0.15, lit by both. Scattering more than once is left out: the real
+/// sky is brighter, most of all near the horizon. A sun straight above, outside the atmosphere, would give a
 /// horizontal white surface a radiance of 1.2. Equirectangular, as Environment wants it.
 RadianceImage make_sky(const Daylight& day, int width = 256, int height = 128);
 

@@ -21,7 +21,8 @@ namespace {
 const Vec3f paper = Vec3f::Constant(0.95f), floor_grey = Vec3f::Constant(0.72f);
 
 /// Where the four rays of a pixel go: a rotated grid.
-constexpr std::array<std::pair<float, float>, 4> places{{{0.375f, 0.125f}, {0.875f, 0.375f}, {0.125f, 0.625f}, {0.625f, 0.875f}}};
+constexpr std::array<std::pair<float, float>, 4> places{
+    {{0.375f, 0.125f}, {0.875f, 0.375f}, {0.125f, 0.625f}, {0.625f, 0.875f}}};
 
 class DiagnosticScene {
  public:
@@ -43,7 +44,8 @@ class DiagnosticScene {
     RayPacket rays;
     for (std::size_t i = 0; i < packet_size; ++i) {
       const auto& place = places[i % 4];
-      rays[i].direction = camera_.direction(x + static_cast<int>(i / 4) + static_cast<double>(place.first), y + static_cast<double>(place.second));
+      rays[i].direction = camera_.direction(x + static_cast<int>(i / 4) + static_cast<double>(place.first),
+                                            y + static_cast<double>(place.second));
       rays[i].active = true;
     }
     const HitPacket hits = solids_.intersect(rays, true);
@@ -91,16 +93,21 @@ class DiagnosticScene {
     const Vec3f at = ray.direction * t - (scene_.ground.centre - eye_).cast<float>();
     const float distance = std::sqrt(at.x() * at.x() + at.z() * at.z());
     return mix(floor_grey, paper,
-               smooth_step(0.5f * static_cast<float>(scene_.ground.fade_start), static_cast<float>(scene_.ground.fade_end), distance));
+               smooth_step(0.5f * static_cast<float>(scene_.ground.fade_start),
+                           static_cast<float>(scene_.ground.fade_end), distance));
   }
 
   /// Whether a place of the surface is within half a pixel of an edge of its triangle.
   bool on_wire(const Ray& ray, const RayHit& hit) const {
     const auto& corners = picture_.surface->mesh.triangles[hit.triangle];
-    const auto at = [&](std::size_t k) -> Vec3f { return (picture_.surface->mesh.vertices[corners[k]] - eye_).cast<float>(); };
+    const auto at = [&](std::size_t k) -> Vec3f {
+      return (picture_.surface->mesh.vertices[corners[k]] - eye_).cast<float>();
+    };
     const Vec3f a = at(0), b = at(1), c = at(2), p = ray.direction * hit.t;
     const float width = 0.5f * hit.t / static_cast<float>(camera_.pixels_per_x);
-    const auto near_edge = [&](const Vec3f& from, const Vec3f& to) { return (p - from).cross(to - from).norm() < width * (to - from).norm(); };
+    const auto near_edge = [&](const Vec3f& from, const Vec3f& to) {
+      return (p - from).cross(to - from).norm() < width * (to - from).norm();
+    };
     return near_edge(a, b) || near_edge(b, c) || near_edge(c, a);
   }
 
@@ -126,8 +133,8 @@ ImageRgb8 draw_diagnostic(const DiagnosticPicture& picture, const RenderScene& s
       for (int x = 0; x < image.width; x += 2) {
         const auto colours = view.pixels(x, y);
         for (int i = 0; i < std::min(2, image.width - x); ++i)
-          image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x + i)] =
-              quantize_srgb(colours[static_cast<std::size_t>(i)], 0.0f);
+          image.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) +
+                       static_cast<std::size_t>(x + i)] = quantize_srgb(colours[static_cast<std::size_t>(i)], 0.0f);
       }
   });
   draw_colour_bar(image, picture.scale, view.map());

@@ -24,9 +24,9 @@ struct DiagnosticPicture {
   SurfaceOverlay overlay = SurfaceOverlay::none;
 };
 
-/// Draws the particles, colliders and ground of `scene` from its camera, lit from the eye and from above, on white; four
-/// rays a pixel through Embree (docs/decisions/0026-diagnostic-view.md). The same input gives the same bytes on any number
-/// of threads. Throws Error on what check_scene refuses.
+/// Draws the particles, colliders and ground of `scene` from its camera, lit from the eye and from above, on white;
+/// four rays a pixel through Embree (docs/decisions/0026-diagnostic-view.md). The same input gives the same bytes on
+/// any number of threads. Throws Error on what check_scene refuses.
 ImageRgb8 draw_diagnostic(const DiagnosticPicture& picture, const RenderScene& scene);
 
 }  // namespace smelt

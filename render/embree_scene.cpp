@@ -34,15 +34,16 @@ EmbreeScene::~EmbreeScene() {
   if (handles_->device != nullptr) rtcReleaseDevice(handles_->device);
 }
 
-int EmbreeScene::add_mesh(const TriangleMesh& mesh, const Vec3& origin, std::span<const Vec3f> velocity, float shutter) {
+int EmbreeScene::add_mesh(const TriangleMesh& mesh, const Vec3& origin, std::span<const Vec3f> velocity,
+                          float shutter) {
   const int number = handles_->n_meshes++;
   if (mesh.triangles.empty()) return number;
   RTCGeometry geometry = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_TRIANGLE);
   const bool moving = shutter > 0.0f && !velocity.empty();
   rtcSetGeometryTimeStepCount(geometry, moving ? 2 : 1);
   for (unsigned step = 0; step < (moving ? 2u : 1u); ++step) {
-    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3,
-                                                                 3 * sizeof(float), mesh.vertices.size()));
+    auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
+        geometry, RTC_BUFFER_TYPE_VERTEX, step, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.vertices.size()));
     handles_->check("copying a mesh");
     const float time = moving ? (static_cast<float>(step) - 0.5f) * shutter : 0.0f;
     for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
@@ -67,8 +68,8 @@ int EmbreeScene::add_spheres(std::span<const Vec3> centres, double radius, const
   const int number = handles_->n_meshes++;
   if (centres.empty()) return number;
   RTCGeometry geometry = rtcNewGeometry(handles_->device, RTC_GEOMETRY_TYPE_SPHERE_POINT);
-  auto* spheres = static_cast<float*>(
-      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4, 4 * sizeof(float), centres.size()));
+  auto* spheres = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT4,
+                                                              4 * sizeof(float), centres.size()));
   handles_->check("copying particles");
   for (const Vec3& centre : centres) {
     for (int i = 0; i < 3; ++i) *spheres++ = static_cast<float>(centre[i] - origin[i]);
@@ -81,8 +82,8 @@ int EmbreeScene::add_spheres(std::span<const Vec3> centres, double radius, const
 }
 
 void EmbreeScene::commit() {
-  // One thread builds the hierarchy: two could order its leaves differently from run to run, and so the pictures. (Embree's own
-  // "threads=1" would hold all of oneTBB to one thread.)
+  // One thread builds the hierarchy: two could order its leaves differently from run to run, and so the pictures.
+  // (Embree's own "threads=1" would hold all of oneTBB to one thread.)
   tbb::task_arena(1).execute([&] { rtcCommitScene(handles_->scene); });
   handles_->check("building the ray hierarchy");
 }

@@ -48,7 +48,8 @@ class EmbreeScene {
   /// Adds a copy of the mesh, moved by -origin [m] (rays live in floats, so keep them near zero). Returns its number,
   /// counted from 0. An empty mesh takes a number too. While the shutter is open, for `shutter` [s], vertices move with
   /// their `velocity` [m/s] (empty: they stand still), and are half-way where the mesh says.
-  int add_mesh(const TriangleMesh& mesh, const Vec3& origin, std::span<const Vec3f> velocity = {}, float shutter = 0.0f);
+  int add_mesh(const TriangleMesh& mesh, const Vec3& origin, std::span<const Vec3f> velocity = {},
+               float shutter = 0.0f);
   /// Adds spheres of one radius [m], moved by -origin. A hit's `triangle` is the number of its sphere.
   int add_spheres(std::span<const Vec3> centres, double radius, const Vec3& origin);
   /// Builds the hierarchy.

@@ -24,8 +24,9 @@ EnvironmentMap::EnvironmentMap(const Environment& environment)
   const RadianceImage& image = *environment_.image;
   const int w = image.width, h = image.height;
   const auto at = [&](int x, int y) {
-    return image.pixels[static_cast<std::size_t>(std::clamp(y, 0, h - 1)) * static_cast<std::size_t>(w) +
-                        static_cast<std::size_t>((x + w) % w)]
+    return image
+        .pixels[static_cast<std::size_t>(std::clamp(y, 0, h - 1)) * static_cast<std::size_t>(w) +
+                static_cast<std::size_t>((x + w) % w)]
         .sum();
   };
   row_sums_.resize(static_cast<std::size_t>(h));
@@ -45,7 +46,8 @@ EnvironmentMap::EnvironmentMap(const Environment& environment)
       total += sine * at(x, y);
       sphere += sine;
     }
-    row_sums_[static_cast<std::size_t>(y)] = static_cast<float>(row) + (y == 0 ? 0.0f : row_sums_[static_cast<std::size_t>(y) - 1]);
+    row_sums_[static_cast<std::size_t>(y)] =
+        static_cast<float>(row) + (y == 0 ? 0.0f : row_sums_[static_cast<std::size_t>(y) - 1]);
   }
   mean_sum_ = static_cast<float>(total / sphere) * environment.strength;
 }
@@ -77,7 +79,8 @@ Vec3f EnvironmentMap::radiance(const Vec3f& d) const {
 Vec3f EnvironmentMap::sample(Sample2 s) const {
   const int w = environment_.image->width, h = environment_.image->height;
   const auto [row, in_row] = invert(row_sums_.data(), h, s.v);
-  const auto [column, in_cell] = invert(&cell_sums_[static_cast<std::size_t>(row) * static_cast<std::size_t>(w)], w, s.u);
+  const auto [column, in_cell] =
+      invert(&cell_sums_[static_cast<std::size_t>(row) * static_cast<std::size_t>(w)], w, s.u);
   const float theta = pi_f * (static_cast<float>(row) + in_row) / static_cast<float>(h);
   const float phi = 2.0f * pi_f * ((static_cast<float>(column) + in_cell) / static_cast<float>(w) - 0.5f) - rotation_;
   return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};

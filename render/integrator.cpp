@@ -74,15 +74,16 @@ RayPacket rays_of(const VertexPacket& vertices, Ray Vertex::*ray) {
   return rays;
 }
 
-void aim_at_light(const ShadingScene& scene, const SurfacePoint& point, const LightSample& light, float time, Vertex& vertex) {
+void aim_at_light(const ShadingScene& scene, const SurfacePoint& point, const LightSample& light, float time,
+                  Vertex& vertex) {
   vertex.shadow = ray_from(scene, point, light.direction, light.distance * 0.999f);
   vertex.shadow.time = time;
 }
 
 /// A white diffusing body; `share(cosine)` is what of the light from there comes through its coat.
 template <typename Share>
-void scatter_diffuse(const ShadingScene& scene, const SurfacePoint& point, float time, const Share& share, Sample2 at_light,
-                     float which_light, Sample2 direction, Vertex& vertex) {
+void scatter_diffuse(const ShadingScene& scene, const SurfacePoint& point, float time, const Share& share,
+                     Sample2 at_light, float which_light, Sample2 direction, Vertex& vertex) {
   if (scene.lights().any()) {
     const LightSample light = scene.sample_light(point.position, at_light, which_light);
     const float cos_in = point.normal.dot(light.direction);
@@ -102,7 +103,8 @@ void scatter_diffuse(const ShadingScene& scene, const SurfacePoint& point, float
 /// What a mirroring surface does to light, but for the shape of its lobe: Fresnel's share, and more for metals.
 class Mirror {
  public:
-  Mirror(const ShadingScene& scene, const SurfacePoint& point, float cos_out) : metal_(point.metal), ior_(scene.view().look.ior) {
+  Mirror(const ShadingScene& scene, const SurfacePoint& point, float cos_out)
+      : metal_(point.metal), ior_(scene.view().look.ior) {
     if (metal_) {
       f0_ = point.albedo;
       scale_ = multiple_scattering(scene.mirror_albedo(), f0_, cos_out, point.roughness);
@@ -111,7 +113,8 @@ class Mirror {
     }
   }
   Vec3f operator()(float cosine) const {
-    return metal_ ? Vec3f(scale_.cwiseProduct(fresnel_metal(f0_, cosine))) : Vec3f(scale_ * fresnel_dielectric(cosine, ior_));
+    return metal_ ? Vec3f(scale_.cwiseProduct(fresnel_metal(f0_, cosine)))
+                  : Vec3f(scale_ * fresnel_dielectric(cosine, ior_));
   }
 
  private:
@@ -121,8 +124,8 @@ class Mirror {
 };
 
 /// A coat or a metal, seen from `view` (unit, towards the eye).
-void scatter_mirror(const ShadingScene& scene, const SurfacePoint& point, const Vec3f& view, float time, Sample2 at_light,
-                    float which_light, Sample2 direction, Vertex& vertex) {
+void scatter_mirror(const ShadingScene& scene, const SurfacePoint& point, const Vec3f& view, float time,
+                    Sample2 at_light, float which_light, Sample2 direction, Vertex& vertex) {
   const Frame frame(point.normal);
   Vec3f wo = frame.to_local(view);
   // Interpolated normals may lean away from the eye at silhouettes: such points are seen edge on.
@@ -253,7 +256,8 @@ class PathPacket {
     if (point.metal) {
       scatter_mirror(scene_, point, -ray.direction, ray.time, where, which.u, direction, vertex);
     } else {
-      scatter_diffuse(scene_, point, ray.time, [](float) { return 1.0f; }, where, which.u, direction, vertex);
+      scatter_diffuse(
+          scene_, point, ray.time, [](float) { return 1.0f; }, where, which.u, direction, vertex);
       colour = point.albedo;
     }
     carried_[i] = throughput_[i].cwiseProduct(colour);
@@ -349,8 +353,8 @@ std::array<Entry, packet_size> scatter_inside(const ShadingScene& scene, const S
   return entries;
 }
 
-/// Chance of the coat where a sample follows one lobe: its share of what is reflected, but never so small that highlights
-/// would be rare.
+/// Chance of the coat where a sample follows one lobe: its share of what is reflected, but never so small that
+/// highlights would be rare.
 float coat_chance(const ShadingScene& scene, const SurfacePoint& point, const Vec3f& direction) {
   if (point.metal) return 1.0f;
   if (point.specular <= 0.0f) return 0.0f;
@@ -435,7 +439,8 @@ void add_lobe(SampleRadiance& sample, Lobe lobe, const Vec3f& direct, Vec3f indi
 
 }  // namespace
 
-std::array<SampleRadiance, packet_size> trace_packet(const ShadingScene& scene, Samples samples, const PathOptions& options) {
+std::array<SampleRadiance, packet_size> trace_packet(const ShadingScene& scene, Samples samples,
+                                                     const PathOptions& options) {
   // What the camera sees.
   std::array<SampleRadiance, packet_size> result;
   RayPacket rays;

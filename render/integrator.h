@@ -30,10 +30,10 @@ struct SampleRadiance {
   Vec3f specular = Vec3f::Zero();
   Vec3f emission = Vec3f::Zero();  ///< also the backdrop
   Vec3f normal = Vec3f::Zero();
-  Vec3f position = Vec3f::Zero();  ///< relative to the camera's eye [m]
-  float fade = 1.0f;               ///< of the floor into the backdrop; 1 where nothing is
-  Vec3f colour = Vec3f::Zero();    ///< albedo, of metals too
-  Vec3f velocity = Vec3f::Zero();  ///< [m/s]
+  Vec3f position = Vec3f::Zero();                               ///< relative to the camera's eye [m]
+  float fade = 1.0f;                                            ///< of the floor into the backdrop; 1 where nothing is
+  Vec3f colour = Vec3f::Zero();                                 ///< albedo, of metals too
+  Vec3f velocity = Vec3f::Zero();                               ///< [m/s]
   float temperature = std::numeric_limits<float>::quiet_NaN();  ///< [K], of the skin; not a number where there is none
   float clamped = 0.0f;                                         ///< luminance that the firefly limit took away
 };
@@ -45,12 +45,12 @@ struct PathOptions {
   bool both_lobes = true;      ///< each sample follows body and coat; false: one of them, by chance
 };
 
-/// Traces up to packet_size camera samples. Estimator per sample, at the first surface for body and coat each, or for one
-/// of them by chance:
+/// Traces up to packet_size camera samples. Estimator per sample, at the first surface for body and coat each, or for
+/// one of them by chance:
 ///  - a light (render/light_set.h) and a ray of the lobe's own distribution (cosine; visible GGX normals), combined by
-///    the power heuristic [Veach 1997]. The body's begin where the light enters it: with scattering that is a neighbouring
-///    point drawn from the normalised diffusion profile [Christensen and Burley 2015] or, through thin parts, the far
-///    side; every weight's mean is at most 1, so no light is made.
+///    the power heuristic [Veach 1997]. The body's begin where the light enters it: with scattering that is a
+///    neighbouring point drawn from the normalised diffusion profile [Christensen and Burley 2015] or, through thin
+///    parts, the far side; every weight's mean is at most 1, so no light is made.
 ///  - what the rays meet is lit and left in the same way, seen as its diffusing body, or as a metal, `n_bounces` times;
 ///    from the third surface on paths end by Russian roulette. The last surface draws one light or one ray to the sky.
 /// Unbiased for light paths of that length, but for `firefly_limit`: it darkens, by the sum of `clamped`.

@@ -38,7 +38,8 @@ bool LightSet::SunCone::contains(const Vec3f& d) const {
   return 0.5f * (d - direction).squaredNorm() <= one_minus_cos;
 }
 
-LightSet::LightSet(const RenderScene& scene, const Vec3& origin, GlowLight glow) : sky_(scene.sky), glow_(std::move(glow)) {
+LightSet::LightSet(const RenderScene& scene, const Vec3& origin, GlowLight glow)
+    : sky_(scene.sky), glow_(std::move(glow)) {
   for (const AreaLight& light : scene.lights) lamps_.push_back(place_lamp(light, origin));
   if (scene.sun) {
     const double angle = scene.sun->angular_radius_deg * std::numbers::pi / 180.0;
@@ -83,8 +84,9 @@ LightSample LightSet::sample(const Vec3f& point, Sample2 where, float which) con
   } else if (sun) {
     const float one_minus_cos = where.v * sun_->one_minus_cos, phi = 2.0f * pi_f * where.u;
     const float sine = std::sqrt(one_minus_cos * (2.0f - one_minus_cos));
-    sample.direction =
-        Frame(sun_->direction).to_world({sine * std::cos(phi), sine * std::sin(phi), 1.0f - one_minus_cos}).normalized();
+    sample.direction = Frame(sun_->direction)
+                           .to_world({sine * std::cos(phi), sine * std::sin(phi), 1.0f - one_minus_cos})
+                           .normalized();
     sample.radiance = sun_->radiance;
     sample.pdf = choice.chance() / sun_->solid_angle;
   } else {
@@ -116,8 +118,7 @@ LampHit LightSet::nearest_lamp(const Vec3f& point, const Vec3f& direction, float
     which = &lamp;
   }
   if (which != nullptr)
-    nearest.radiance =
-        which->radiance * power_heuristic(pdf, lamp_pdf(*which, point, direction, nearest.distance));
+    nearest.radiance = which->radiance * power_heuristic(pdf, lamp_pdf(*which, point, direction, nearest.distance));
   return nearest;
 }
 

@@ -88,13 +88,13 @@ void CoatAlbedo::tabulate(const Fresnel& fresnel) {
       // Mean of F G / G1 over mirrored visible normals.
       double sum = 0.0;
       for (int i = 0; i < n; ++i) {
-        const Sample2 s{(static_cast<float>(i % n_around) + 0.5f) / n_around, (static_cast<float>(i / n_around) + 0.5f) / n_polar};
+        const Sample2 s{(static_cast<float>(i % n_around) + 0.5f) / n_around,
+                        (static_cast<float>(i / n_around) + 0.5f) / n_polar};
         const Vec3f half = sample_ggx_visible_normal(wo, alpha, s);
         const Vec3f wi = half * (2.0f * half.dot(wo)) - wo;
         if (wi.z() <= 0.0f) continue;
         const float lambda_out = ggx_lambda(wo, alpha);
-        sum +=
-            fresnel(half.dot(wo)) * (1.0f + lambda_out) / (1.0f + lambda_out + ggx_lambda(wi, alpha));
+        sum += fresnel(half.dot(wo)) * (1.0f + lambda_out) / (1.0f + lambda_out + ggx_lambda(wi, alpha));
       }
       table_[static_cast<std::size_t>(r)][static_cast<std::size_t>(c)] = static_cast<float>(sum / n);
     }

@@ -43,8 +43,9 @@ void check_attributes(const SurfaceMesh& fluid, const Look& look) {
   if (look.black_body && fluid.temperature.empty())
     fail("look.black_body: the surface has no temperature to glow with; give the material `heat`, or leave this out");
   if (look.crust && fluid.rest.empty())
-    fail("look.crust: the surface has no rest positions, which its pattern moves with; set particles.rest_position = true "
-         "and simulate again, or leave this out");
+    fail(
+        "look.crust: the surface has no rest positions, which its pattern moves with; set particles.rest_position = "
+        "true and simulate again, or leave this out");
 }
 
 void check_options(const RenderOptions& options) {
@@ -81,14 +82,14 @@ ImageRgb<Channel> develop(const Film& film, double exposure, ToneCurve curve, co
   image.pixels.resize(film.size());
   const auto gain = static_cast<float>(exposure);
   const auto width = static_cast<std::size_t>(film.width);
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, film.size(), 8192),
-                    [&](const tbb::blocked_range<std::size_t>& pixels) {
-                      for (std::size_t i = pixels.begin(); i < pixels.end(); ++i) {
-                        const Vec3f exposed = radiance_at(film, i) * gain;
-                        const Vec3f shown = curve == ToneCurve::film ? tone_map_film(exposed) : tone_map_neutral(exposed);
-                        image.pixels[i] = quantize(shown, static_cast<int>(i % width), static_cast<int>(i / width));
-                      }
-                    });
+  tbb::parallel_for(
+      tbb::blocked_range<std::size_t>(0, film.size(), 8192), [&](const tbb::blocked_range<std::size_t>& pixels) {
+        for (std::size_t i = pixels.begin(); i < pixels.end(); ++i) {
+          const Vec3f exposed = radiance_at(film, i) * gain;
+          const Vec3f shown = curve == ToneCurve::film ? tone_map_film(exposed) : tone_map_neutral(exposed);
+          image.pixels[i] = quantize(shown, static_cast<int>(i % width), static_cast<int>(i / width));
+        }
+      });
   return image;
 }
 
@@ -107,7 +108,8 @@ ImageRgb8 develop8(const Film& film, double exposure, ToneCurve curve) {
 }
 
 ImageRgb16 develop16(const Film& film, double exposure, ToneCurve curve) {
-  return develop<std::uint16_t>(film, exposure, curve, [](const Vec3f& colour, int, int) { return quantize_srgb16(colour); });
+  return develop<std::uint16_t>(film, exposure, curve,
+                                [](const Vec3f& colour, int, int) { return quantize_srgb16(colour); });
 }
 
 LayeredImage to_layers(const Film& film, const Vec3& eye) {
@@ -118,7 +120,8 @@ LayeredImage to_layers(const Film& film, const Vec3& eye) {
     for (std::size_t i = 0; i < film.size(); ++i) channel.values[i] = value_of(i);
   };
   const auto plane = [](const Plane& values) { return [&values](std::size_t i) { return values[i]; }; };
-  for (int c = 0; c < 3; ++c) add(c == 0 ? "R" : c == 1 ? "G" : "B", [&](std::size_t i) { return radiance_at(film, i)[c]; });
+  for (int c = 0; c < 3; ++c)
+    add(c == 0 ? "R" : c == 1 ? "G" : "B", [&](std::size_t i) { return radiance_at(film, i)[c]; });
   add("A", plane(film.layers->alpha));
   const auto add_colour = [&](const char* r, const char* g, const char* b, const Plane3& planes) {
     add(r, plane(planes[0]));
@@ -129,10 +132,13 @@ LayeredImage to_layers(const Film& film, const Vec3& eye) {
   add("depth.Z", plane(film.layers->depth));
   add_colour("normal.X", "normal.Y", "normal.Z", film.normal);
   for (std::size_t a = 0; a < 3; ++a)
-    add(a == 0 ? "position.X" : a == 1 ? "position.Y" : "position.Z", [&](std::size_t i) {
-      const bool there = film.layers->depth[i] != 0.0f;
-      return there ? static_cast<float>(film.layers->position[a][i] + eye[static_cast<int>(a)]) : 0.0f;
-    });
+    add(a == 0   ? "position.X"
+        : a == 1 ? "position.Y"
+                 : "position.Z",
+        [&](std::size_t i) {
+          const bool there = film.layers->depth[i] != 0.0f;
+          return there ? static_cast<float>(film.layers->position[a][i] + eye[static_cast<int>(a)]) : 0.0f;
+        });
   add("temperature.T", plane(film.layers->temperature));
   add_colour("velocity.X", "velocity.Y", "velocity.Z", film.layers->velocity);
   return image;

@@ -87,7 +87,7 @@ enum class MaterialKind {
 
 /// The surface glows as its temperature says.
 struct BlackBodyLook {
-  float emissivity = 0.95f;    ///< in (0, 1]
+  float emissivity = 0.95f;     ///< in (0, 1]
   float white_cd_m2 = 2500.0f;  ///< luminance that counts as a radiance of 1 [cd/m^2]: sunlit white 30000, dusk 100
 };
 

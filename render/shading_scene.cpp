@@ -61,8 +61,8 @@ ShadingScene::ShadingScene(const SurfaceMesh& fluid, const RenderScene& scene)
 Vec3f ShadingScene::fluid_position(const MeshPoint& at) const {
   const auto& t = fluid_.mesh.triangles[at.triangle];
   const auto corner = [&](int k) -> Vec3 { return fluid_.mesh.vertices[t[static_cast<std::size_t>(k)]] - origin_; };
-  return (corner(0) * (1.0 - static_cast<double>(at.u) - static_cast<double>(at.v)) + corner(1) * static_cast<double>(at.u) +
-          corner(2) * static_cast<double>(at.v))
+  return (corner(0) * (1.0 - static_cast<double>(at.u) - static_cast<double>(at.v)) +
+          corner(1) * static_cast<double>(at.u) + corner(2) * static_cast<double>(at.v))
       .cast<float>();
 }
 
@@ -84,7 +84,8 @@ GlowLight ShadingScene::gather_glow() const {
       float hottest = 0.0f;
       for (const std::uint32_t vertex : fluid_.mesh.triangles[k])
         hottest = std::max(hottest, fluid_.temperature[vertex]);
-      const Vec3f bare = black_body_(hottest) * (scene_.look.black_body->emissivity / scene_.look.black_body->white_cd_m2);
+      const Vec3f bare =
+          black_body_(hottest) * (scene_.look.black_body->emissivity / scene_.look.black_body->white_cd_m2);
       power[k] = area[k] * 0.5f * (point.emission.sum() + bare.sum());
     }
   });

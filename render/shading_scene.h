@@ -2,8 +2,8 @@
 // Everything a ray can meet, ready for queries.
 
 #include "core/geometry/surface_mesh.h"
-#include "render/embree_scene.h"
 #include "render/black_body.h"
+#include "render/embree_scene.h"
 #include "render/light_set.h"
 #include "render/material.h"
 #include "render/scene_view.h"
@@ -26,11 +26,11 @@ struct SurfacePoint {
   Vec3f geometric_normal = Vec3f::UnitY();  ///< of the triangle, same side
   Vec3f albedo = Vec3f::Zero();
   float roughness = 1.0f;
-  float specular = 0.0f;  ///< 0: no coat
-  float scatter = 0.0f;   ///< [m]
-  float fade = 0.0f;      ///< of the floor into the backdrop: 0 floor, 1 backdrop
-  bool metal = false;     ///< mirrors with reflectance `albedo`, and has no body
-  Vec3f emission = Vec3f::Zero();  ///< radiance of its own
+  float specular = 0.0f;                                        ///< 0: no coat
+  float scatter = 0.0f;                                         ///< [m]
+  float fade = 0.0f;                                            ///< of the floor into the backdrop: 0 floor, 1 backdrop
+  bool metal = false;                                           ///< mirrors with reflectance `albedo`, and has no body
+  Vec3f emission = Vec3f::Zero();                               ///< radiance of its own
   float temperature = std::numeric_limits<float>::quiet_NaN();  ///< of its skin [K]; not a number where unknown
   Vec3f velocity = Vec3f::Zero();                               ///< [m/s]
   std::uint32_t triangle = 0;                                   ///< of the fluid or the collider

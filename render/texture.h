@@ -7,8 +7,8 @@
 
 namespace smelt {
 
-/// Smooth noise about 0, mostly within [-0.7, 0.7], with features of size 1: gradients hashed at lattice points, blended
-/// by a quintic [Perlin 2002]. Twice differentiable; 0 at lattice points.
+/// Smooth noise about 0, mostly within [-0.7, 0.7], with features of size 1: gradients hashed at lattice points,
+/// blended by a quintic [Perlin 2002]. Twice differentiable; 0 at lattice points.
 float gradient_noise(const Vec3f& x);
 
 /// `octaves` of gradient_noise, each of half the size and half the height of the one before.

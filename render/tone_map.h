@@ -13,8 +13,8 @@ namespace smelt {
 /// Negative input counts as zero.
 Vec3f tone_map_neutral(const Vec3f& colour);
 
-/// The same shoulder on each channel by itself, as film has it: what glows red turns orange, yellow and white as it grows
-/// brighter.
+/// The same shoulder on each channel by itself, as film has it: what glows red turns orange, yellow and white as it
+/// grows brighter.
 Vec3f tone_map_film(const Vec3f& colour);
 
 /// The sRGB transfer curve (IEC 61966-2-1), [0, 1] to [0, 1].

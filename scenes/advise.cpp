@@ -21,13 +21,13 @@ void advise_on_sound_speed(const SimulationSetup& setup, Advice& advice) {
   if (!(v > 0.0)) return;
   if (c < 5.0 * v)
     advice.push_back(fmt::format(
-        "[solver] sound_speed_m_s = {:.4g} is only {:.2g} times the fastest speed expected, {:.3g} m/s ({}): the density may err by {:.0f} %; "
-        "choose {:.3g} for 1 %",
+        "[solver] sound_speed_m_s = {:.4g} is only {:.2g} times the fastest speed expected, {:.3g} m/s ({}): the "
+        "density may err by {:.0f} %; choose {:.3g} for 1 %",
         c, c / v, v, expected.reason, 100.0 * v * v / (c * c), 10.0 * v));
   if (c > 30.0 * v)
     advice.push_back(fmt::format(
-        "[solver] sound_speed_m_s = {:.4g} is {:.0f} times the fastest speed expected, {:.3g} m/s ({}), and makes the shot {:.1f} times as long "
-        "as {:.3g} would, at which the density errs by 1 %",
+        "[solver] sound_speed_m_s = {:.4g} is {:.0f} times the fastest speed expected, {:.3g} m/s ({}), and makes the "
+        "shot {:.1f} times as long as {:.3g} would, at which the density errs by 1 %",
         c, c / v, v, expected.reason, c / (10.0 * v), 10.0 * v));
 }
 
@@ -40,8 +40,8 @@ void advise_on_relaxed_stress(const SimulationSetup& setup, Advice& advice) {
   const double strain = g * height / (c_s * c_s);
   if (strain > 0.05)
     advice.push_back(fmt::format(
-        "[solver] shear_wave_speed_m_s = {:.4g} is soft: a solid as tall as the bodies, {:.3g} m, would sag by {:.0f} % under its own weight "
-        "at once; choose at least {:.3g} for 2 %",
+        "[solver] shear_wave_speed_m_s = {:.4g} is soft: a solid as tall as the bodies, {:.3g} m, would sag by {:.0f} "
+        "% under its own weight at once; choose at least {:.3g} for 2 %",
         c_s, height, 100.0 * strain, std::sqrt(g * height / 0.02)));
 }
 
@@ -59,8 +59,8 @@ void advise_on_viscosity(const SimulationSetup& setup, Advice& advice) {
     const double viscous = nu > 0.0 ? p.courant * h * h / (8.0 * nu) : acoustic;
     if (viscous < 0.05 * acoustic)
       advice.push_back(fmt::format(
-          "material \"{}\": its viscosity at rest, {:.3g} Pa s, holds the time step at {:.2g} s, {:.3g} times less than sound does; choose [solver] "
-          "shear_wave_speed_m_s = {:.3g}, with which any viscosity is stable",
+          "material \"{}\": its viscosity at rest, {:.3g} Pa s, holds the time step at {:.2g} s, {:.3g} times less "
+          "than sound does; choose [solver] shear_wave_speed_m_s = {:.3g}, with which any viscosity is stable",
           m.name, nu * m.density, viscous, acoustic / viscous, p.sound_speed));
   }
 }
@@ -75,7 +75,8 @@ std::vector<std::string> advise(const SimulationSetup& setup, double time_step) 
   if (const double floor = setup.parameters.min_time_step; time_step < 10.0 * floor)
     advice.push_back(fmt::format(
         "[time_step] min_s = {:.3g} {} the first step, {:.3g} s, so the shot {} stop as diverged; choose {:.1g}", floor,
-        time_step < floor ? "is above" : "is hardly below", time_step, time_step < floor ? "will" : "may", time_step / 1000.0));
+        time_step < floor ? "is above" : "is hardly below", time_step, time_step < floor ? "will" : "may",
+        time_step / 1000.0));
   return advice;
 }
 

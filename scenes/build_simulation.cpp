@@ -4,8 +4,8 @@
 #include "core/geometry/seeding.h"
 #include "io/height_field.h"
 #include "io/mesh_import.h"
-#include "scenes/place_vents.h"
 #include "scenes/collider_motion.h"
+#include "scenes/place_vents.h"
 #include "scenes/prepare_colliders.h"
 #include "scenes/scene_reader.h"
 
@@ -42,13 +42,16 @@ TriangleMesh import_terrain(const std::filesystem::path& file, const TerrainSett
   const HeightField field = refine(read_height_field(file, {s.cell, s.height_scale, s.lowest, s.highest}), s.refine);
   if (!s.closed) return make_terrain_sheet(field);
   const double shorter = field.cell * static_cast<double>(std::min(field.n_columns, field.n_rows) - 1);
-  return make_terrain_solid(field, *std::min_element(field.height.begin(), field.height.end()) - s.depth.value_or(0.1 * shorter));
+  return make_terrain_solid(
+      field, *std::min_element(field.height.begin(), field.height.end()) - s.depth.value_or(0.1 * shorter));
 }
 
 TriangleMesh import_placed(const Scene& scene, const std::string& name, const PlacementSettings& placement,
-                           void (*validate)(const TriangleMesh&), const std::optional<TerrainSettings>& terrain = std::nullopt) {
+                           void (*validate)(const TriangleMesh&),
+                           const std::optional<TerrainSettings>& terrain = std::nullopt) {
   const std::filesystem::path file = find_mesh(scene, name);
-  TriangleMesh mesh = is_height_field(file) ? import_terrain(file, terrain.value_or(TerrainSettings{})) : import_mesh(file);
+  TriangleMesh mesh =
+      is_height_field(file) ? import_terrain(file, terrain.value_or(TerrainSettings{})) : import_mesh(file);
   try {
     validate(mesh);
     place(mesh, placement);
@@ -69,7 +72,8 @@ std::vector<PlacedBody> import_bodies(const Scene& scene, std::vector<std::strin
   double volume = 0.0;
   for (const TriangleMesh& mesh : meshes) {
     // A mesh with holes has no volume to speak of: its box does for the estimate.
-    volume += compute_topology(mesh).closed() ? std::abs(compute_volume(mesh)) : 0.3 * compute_bounds(mesh).extent().prod();
+    volume +=
+        compute_topology(mesh).closed() ? std::abs(compute_volume(mesh)) : 0.3 * compute_bounds(mesh).extent().prod();
   }
   const double spacing = estimate_spacing(scene, volume);
   std::vector<PlacedBody> bodies;
@@ -106,12 +110,14 @@ std::vector<Seeds> seed_bodies(const Scene& scene, const std::vector<PlacedBody>
 }
 
 std::size_t material_index(const Scene& scene, const std::string& name) {
-  const auto found = std::find_if(scene.materials.begin(), scene.materials.end(), [&](const auto& m) { return m.name == name; });
+  const auto found =
+      std::find_if(scene.materials.begin(), scene.materials.end(), [&](const auto& m) { return m.name == name; });
   CHECK(found != scene.materials.end());
   return static_cast<std::size_t>(found - scene.materials.begin());
 }
 
-void append_body(const Scene& scene, std::size_t k, const PlacedBody& body, const Seeds& seeds, Particles<3>& particles) {
+void append_body(const Scene& scene, std::size_t k, const PlacedBody& body, const Seeds& seeds,
+                 Particles<3>& particles) {
   const BodySettings& settings = scene.bodies[k];
   const std::size_t material = material_index(scene, settings.material);
   for (const Vec3& x : seeds.positions) {
@@ -122,14 +128,17 @@ void append_body(const Scene& scene, std::size_t k, const PlacedBody& body, cons
     particles.density.push_back(scene.materials[material].density);
     if (settings.temperature) {
       const double height = (x[1] - body.bounds.lower[1]) / body.bounds.extent()[1];
-      particles.temperature.push_back((1.0 - height) * settings.temperature->bottom + height * settings.temperature->top);
+      particles.temperature.push_back((1.0 - height) * settings.temperature->bottom +
+                                      height * settings.temperature->top);
     }
   }
 }
 
 /// A square floor so large that no particle of the domain gets past its edge.
 TriangleMesh make_ground(double height, double half_size, const Vec3& centre) {
-  const auto corner = [&](double x, double z) { return Vec3(centre[0] + x * half_size, height, centre[2] + z * half_size); };
+  const auto corner = [&](double x, double z) {
+    return Vec3(centre[0] + x * half_size, height, centre[2] + z * half_size);
+  };
   return {{corner(-1, -1), corner(-1, 1), corner(1, 1), corner(1, -1)}, {{0, 1, 2}, {0, 2, 3}}};
 }
 
@@ -140,8 +149,10 @@ void refuse_bodies_under_ground(const Scene& scene, const std::vector<PlacedBody
     for (std::size_t k = 0; k < bodies.size(); ++k) {
       const double below = collider.ground_height - bodies[k].bounds.lower[1];
       if (below > 1e-6 * bodies[k].bounds.extent()[1])
-        fail("{}: the body reaches {:.4g} m below the ground at y = {} m; move it with translate_m, or put it there with stand_at_y_m = {}",
-             scene.bodies[k].mesh, below, collider.ground_height, collider.ground_height);
+        fail(
+            "{}: the body reaches {:.4g} m below the ground at y = {} m; move it with translate_m, or put it there "
+            "with stand_at_y_m = {}",
+            scene.bodies[k].mesh, below, collider.ground_height, collider.ground_height);
     }
   }
 }
@@ -151,10 +162,13 @@ void refuse_bodies_outside_period(const Scene& scene, const Box3& period, const 
   for (std::size_t k = 0; k < bodies.size(); ++k)
     for (int a = 0; a < 3; ++a) {
       if (!is_periodic(period, a)) continue;
-      const double outside = std::max(period.lower[a] - bodies[k].bounds.lower[a], bodies[k].bounds.upper[a] - period.upper[a]);
+      const double outside =
+          std::max(period.lower[a] - bodies[k].bounds.lower[a], bodies[k].bounds.upper[a] - period.upper[a]);
       if (outside > 1e-6 * bodies[k].bounds.extent()[a])
-        fail("{}: the body reaches {:.4g} m out of the [periodic] box along {}; move it with translate_m, or make the box larger",
-             scene.bodies[k].mesh, outside, "xyz"[a]);
+        fail(
+            "{}: the body reaches {:.4g} m out of the [periodic] box along {}; move it with translate_m, or make the "
+            "box larger",
+            scene.bodies[k].mesh, outside, "xyz"[a]);
     }
 }
 
@@ -187,9 +201,11 @@ double compute_fastest_start(const Scene& scene, const SimulationSetup& setup) {
     const Motion<3>& motion = setup.obstacles[k].motion;
     double reach = 0.0;
     for (const Vec3& x : setup.colliders[k].vertices) reach = std::max(reach, (x - motion.pivot).norm());
-    start = std::max(start, speed_bound(motion, 0.0, scene.shot.frames / scene.shot.fps, reach) + setup.obstacles[k].surface_velocity.norm());
+    start = std::max(start, speed_bound(motion, 0.0, scene.shot.frames / scene.shot.fps, reach) +
+                                setup.obstacles[k].surface_velocity.norm());
   }
-  for (const EmitterSettings& e : scene.emitters) start = std::max(start, e.flow_rate / (std::numbers::pi * e.radius * e.radius));
+  for (const EmitterSettings& e : scene.emitters)
+    start = std::max(start, e.flow_rate / (std::numbers::pi * e.radius * e.radius));
   return start;
 }
 
@@ -202,8 +218,9 @@ double compute_free_fall(const Scene& scene, const Box3& scene_bounds) {
 
 double automatic_sound_speed(double expected_speed) {
   if (!(expected_speed > 0.0))
-    fail("[solver] sound_speed_m_s: nothing moves at the start and there is no gravity, so it does not follow from the scene; give it, "
-         "about ten times the fastest speed expected");
+    fail(
+        "[solver] sound_speed_m_s: nothing moves at the start and there is no gravity, so it does not follow from the "
+        "scene; give it, about ten times the fastest speed expected");
   return 10.0 * expected_speed;
 }
 
@@ -252,7 +269,8 @@ double weigh_body(const ColliderSettings& s, TriangleMesh& mesh, std::vector<std
 void set_heat_exchange(const Scene& scene, SolverParameters<3>& p) {
   if (scene.ambient) p.ambient = Ambient{*scene.ambient->temperature, scene.ambient->heat_transfer};
   for (const HeatSourceSettings& s : scene.heat_sources) {
-    HeatSource<3> source{s.position, s.velocity, s.radius, s.power, s.temperature.value_or(0.0), s.heat_transfer.value_or(0.0), s.from};
+    HeatSource<3> source{
+        s.position, s.velocity, s.radius, s.power, s.temperature.value_or(0.0), s.heat_transfer.value_or(0.0), s.from};
     if (s.until) source.end = *s.until;
     p.heat_sources.push_back(source);
   }
@@ -286,9 +304,15 @@ void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetu
   set_heat_exchange(scene, p);
   p.courant = scene.time_step.courant;
   p.min_time_step = scene.time_step.min_time_step;
-  const Vec3 margin = Vec3::Constant(10.0 * scene_bounds.extent().maxCoeff());
-  p.domain.lower = scene.domain.lower.value_or(scene_bounds.lower - margin);
-  p.domain.upper = scene.domain.upper.value_or(scene_bounds.upper + margin);
+  Box3 reached = scene_bounds;
+  for (const EmitterSettings& e : scene.emitters) {
+    const Vec3 pile = Vec3::Constant(e.radius + pile_size(scene, e));
+    reached.extend(e.position - pile);
+    reached.extend(e.position + pile);
+  }
+  const Vec3 margin = Vec3::Constant(10.0 * reached.extent().maxCoeff());
+  p.domain.lower = scene.domain.lower.value_or(reached.lower - margin);
+  p.domain.upper = scene.domain.upper.value_or(reached.upper + margin);
 }
 
 }  // namespace
@@ -296,20 +320,29 @@ void set_parameters(const Scene& scene, const Box3& scene_bounds, SimulationSetu
 std::vector<TriangleMesh> import_placed_bodies(const Scene& scene) {
   std::vector<TriangleMesh> meshes;
   for (std::size_t k = 0; k < scene.bodies.size(); ++k)
-    meshes.push_back(blame(scene.places, fmt::format("body.{}.mesh", k),
-                           [&] { return import_placed(scene, scene.bodies[k].mesh, scene.bodies[k].placement, validate_mesh); }));
+    meshes.push_back(blame(scene.places, fmt::format("body.{}.mesh", k), [&] {
+      return import_placed(scene, scene.bodies[k].mesh, scene.bodies[k].placement, validate_mesh);
+    }));
   return meshes;
 }
 
 TriangleMesh import_placed_collider(const Scene& scene, std::size_t k) {
   const ColliderSettings& collider = scene.colliders[k];
-  return blame(scene.places, fmt::format("collider.{}.mesh", k),
-               [&] { return import_placed(scene, collider.mesh, collider.placement, validate_surface, collider.terrain); });
+  return blame(scene.places, fmt::format("collider.{}.mesh", k), [&] {
+    return import_placed(scene, collider.mesh, collider.placement, validate_surface, collider.terrain);
+  });
+}
+
+double pile_size(const Scene& scene, const EmitterSettings& emitter) {
+  const double shot_end = (scene.shot.frames - 1) / scene.shot.fps;
+  const double seconds = std::min(emitter.end.value_or(shot_end), shot_end) - emitter.start;
+  return std::cbrt(emitter.flow_rate * std::max(0.0, seconds));
 }
 
 double count_poured(const SimulationSetup& setup, double seconds) {
   double volume = 0.0;
-  for (const Emitter<3>& e : setup.parameters.emitters) volume += e.flow_rate * std::max(0.0, std::min(e.end, seconds) - e.start);
+  for (const Emitter<3>& e : setup.parameters.emitters)
+    volume += e.flow_rate * std::max(0.0, std::min(e.end, seconds) - e.start);
   return volume / setup.parameters.particle_volume;
 }
 
@@ -348,7 +381,8 @@ SimulationSetup build_simulation(const Scene& scene) {
     setup.body_bounds.extend(bodies[k].bounds.lower);
     setup.body_bounds.extend(bodies[k].bounds.upper);
   }
-  for (const MaterialSettings& m : scene.materials) setup.materials.push_back({m.name, m.density, to_rheology(m.viscosity, m.heat), m.heat});
+  for (const MaterialSettings& m : scene.materials)
+    setup.materials.push_back({m.name, m.density, to_rheology(m.viscosity, m.heat), m.heat});
 
   Box3 scene_bounds = setup.body_bounds;
   for (const EmitterSettings& e : scene.emitters) scene_bounds.extend(e.position);
@@ -360,12 +394,13 @@ SimulationSetup build_simulation(const Scene& scene) {
       setup.colliders.emplace_back();
     } else {
       setup.colliders.push_back(import_placed_collider(scene, k));
+      wind_collider(scene, k, setup.colliders.back(), setup.warnings);
     }
     TriangleMesh& mesh = setup.colliders.back();
     setup.obstacles.push_back(to_obstacle(collider, mesh));
     if (collider.rigid())
-      setup.obstacles.back().mass =
-          blame(scene.places, fmt::format("collider.{}.mesh", k), [&] { return weigh_body(collider, mesh, setup.warnings); });
+      setup.obstacles.back().mass = blame(scene.places, fmt::format("collider.{}.mesh", k),
+                                          [&] { return weigh_body(collider, mesh, setup.warnings); });
     const Motion<3>& motion = setup.obstacles.back().motion;
     const TriangleMesh at_start = motion.still() ? mesh : moved(mesh, pose_at(motion, 0.0));
     for (const Vec3& x : at_start.vertices) scene_bounds.extend(x);
@@ -390,7 +425,8 @@ Colliders<3> build_colliders(const SimulationSetup& setup) {
     const TriangleMesh& mesh = setup.colliders[k];
     std::vector<Simplex<3>> triangles;
     triangles.reserve(mesh.triangles.size());
-    for (const auto& t : mesh.triangles) triangles.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+    for (const auto& t : mesh.triangles)
+      triangles.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
     Obstacle<3> obstacle = setup.obstacles[k];
     obstacle.facets = std::move(triangles);
     colliders.add(std::move(obstacle));

@@ -72,17 +72,23 @@ void set_camera(const Scene& scene, Camera& camera) {
   if (s.focal_length) camera.vertical_fov_deg = 2.0 * std::atan(0.5 * s.film_height / *s.focal_length) / degree;
   camera.width = s.width;
   camera.height = s.height;
-  if (s.f_number) camera.aperture = 0.5 * s.film_height / std::tan(0.5 * camera.vertical_fov_deg * degree) / *s.f_number;
+  if (s.f_number)
+    camera.aperture = 0.5 * s.film_height / std::tan(0.5 * camera.vertical_fov_deg * degree) / *s.f_number;
   camera.focus_distance = s.focus_distance.value_or(0.0);
   camera.shutter = s.shutter / scene.shot.fps;
 }
 
 AreaLight to_light(const LightSettings& s) {
-  return {s.shape == "disk" ? LightShape::disk : LightShape::rectangle, s.position, s.target, s.width, s.height,
+  return {s.shape == "disk" ? LightShape::disk : LightShape::rectangle,
+          s.position,
+          s.target,
+          s.width,
+          s.height,
           s.radiance.cast<float>()};
 }
 
-/// A terrain's surface is drawn smooth, its walls and bottom are not smoothed into it: their corners are made vertices of their own.
+/// A terrain's surface is drawn smooth, its walls and bottom are not smoothed into it: their corners are made vertices
+/// of their own.
 ColliderView terrain_view(TriangleMesh mesh) {
   std::map<std::uint32_t, std::uint32_t> copies;
   for (auto& t : mesh.triangles) {
@@ -113,10 +119,13 @@ void set_environment(const Scene& scene, RenderScene& view) {
   if (s.kind == "studio") {
     for (Vec3f* colour : {&view.sky.zenith, &view.sky.horizon, &view.sky.ground}) *colour *= strength;
   } else if (s.kind == "image") {
-    view.environment = {std::make_shared<RadianceImage>(read_radiance(find_mesh(scene, s.image))), s.rotate_deg, strength};
+    view.environment = {std::make_shared<RadianceImage>(read_radiance(find_mesh(scene, s.image))), s.rotate_deg,
+                        strength};
   } else {
     const double elevation = s.sun_elevation_deg * degree, azimuth = s.sun_azimuth_deg * degree;
-    const Daylight day{{std::cos(elevation) * std::sin(azimuth), std::sin(elevation), -std::cos(elevation) * std::cos(azimuth)}, s.haze};
+    const Daylight day{
+        {std::cos(elevation) * std::sin(azimuth), std::sin(elevation), -std::cos(elevation) * std::cos(azimuth)},
+        s.haze};
     view.environment = {std::make_shared<RadianceImage>(make_sky(day)), 0.0, strength};
     view.sun = make_sun(day);
     view.sun->radiance *= strength;
@@ -124,16 +133,19 @@ void set_environment(const Scene& scene, RenderScene& view) {
 }
 
 /// Speed of each vertex of a collider whose mesh is `at_rest`, about `time`.
-std::vector<Vec3f> vertex_velocities(const Motion<3>& motion, const TriangleMesh& at_rest, double time, double interval) {
+std::vector<Vec3f> vertex_velocities(const Motion<3>& motion, const TriangleMesh& at_rest, double time,
+                                     double interval) {
   const Pose<3> before = pose_at(motion, time - 0.5 * interval), after = pose_at(motion, time + 0.5 * interval);
   std::vector<Vec3f> velocities;
-  for (const Vec3& x : at_rest.vertices) velocities.push_back(((after.to_world(x) - before.to_world(x)) / interval).cast<float>());
+  for (const Vec3& x : at_rest.vertices)
+    velocities.push_back(((after.to_world(x) - before.to_world(x)) / interval).cast<float>());
   return velocities;
 }
 
 std::vector<Vec3f> vertex_velocities(const BodyPose& body, const TriangleMesh& mesh) {
   std::vector<Vec3f> velocities;
-  for (const Vec3& x : mesh.vertices) velocities.push_back((body.velocity + body.angular_velocity.cross(x - body.centre)).cast<float>());
+  for (const Vec3& x : mesh.vertices)
+    velocities.push_back((body.velocity + body.angular_velocity.cross(x - body.centre)).cast<float>());
   return velocities;
 }
 
@@ -167,7 +179,8 @@ RenderScene build_view(const Scene& scene) {
   for (const ColliderSettings& collider : scene.colliders)
     if (collider.mesh != "ground") {
       TriangleMesh& mesh = obstacles[view.colliders.size()];
-      view.colliders.push_back(is_height_field(collider.mesh) ? terrain_view(std::move(mesh)) : make_smooth_collider(mesh));
+      view.colliders.push_back(is_height_field(collider.mesh) ? terrain_view(std::move(mesh))
+                                                              : make_smooth_collider(mesh));
       set_finish(collider, view.colliders.back());
     }
   return view;
@@ -194,7 +207,8 @@ void place_colliders(const Scene& scene, double time, const std::vector<BodyPose
         drawn_view.normals[v] = pose.rotation.cast<float>() * at_rest[shown].normals[v];
     };
     const Motion<3> motion = to_motion(collider, mesh);
-    const auto body = std::find_if(bodies.begin(), bodies.end(), [&](const BodyPose& b) { return b.collider == static_cast<int>(k); });
+    const auto body = std::find_if(bodies.begin(), bodies.end(),
+                                   [&](const BodyPose& b) { return b.collider == static_cast<int>(k); });
     if (body != bodies.end()) {
       move_to(body->pose);
       drawn_view.velocity = vertex_velocities(*body, drawn_view.mesh);

@@ -12,13 +12,12 @@
 #include "scenes/solver_frame.h"
 #include "scenes/surface_files.h"
 
-#include <unistd.h>
-
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <numbers>
+#include <unistd.h>
 
 namespace smelt {
 
@@ -36,13 +35,14 @@ void add_poured(const SimulationSetup& setup, const Vec3& position, Particles<3>
 
 /// Where a line straight down from `start` comes within half a spacing of an obstacle, above `lowest`.
 std::optional<Vec3> find_ground(const Colliders<3>& colliders, Vec3 start, double lowest, double spacing) {
-  for (; start.y() > lowest; start.y() -= std::max(0.1 * spacing, colliders.clearance(start, 100.0 * spacing) - 0.5 * spacing))
+  for (; start.y() > lowest;
+       start.y() -= std::max(0.1 * spacing, colliders.clearance(start, 100.0 * spacing) - 0.5 * spacing))
     if (colliders.clearance(start, spacing) <= 0.6 * spacing) return start;
   return std::nullopt;
 }
 
-/// Something to measure the pace with where nothing is there at the start: a layer of what the first vent pours, four particles thick, on the
-/// ground around it, as most of a flow comes to lie; or a cube of it where there is no ground.
+/// Something to measure the pace with where nothing is there at the start: a layer of what the first vent pours, four
+/// particles thick, on the ground around it, as most of a flow comes to lie; or a cube of it where there is no ground.
 Particles<3> make_trial_particles(const SimulationSetup& setup, const Colliders<3>& colliders, double n_wanted) {
   constexpr int n_layers = 4;
   const Emitter<3>& e = setup.parameters.emitters.front();
@@ -59,11 +59,13 @@ Particles<3> make_trial_particles(const SimulationSetup& setup, const Colliders<
     for (int j = -half; j < half; ++j) {
       const Vec3 above(e.position.x() + (i + 0.5) * setup.spacing, top, e.position.z() + (j + 0.5) * setup.spacing);
       const auto ground = find_ground(colliders, above, bounds.lower.y(), setup.spacing);
-      for (int layer = 0; ground && layer < n_layers; ++layer) add_poured(setup, *ground + layer * setup.spacing * Vec3::UnitY(), p);
+      for (int layer = 0; ground && layer < n_layers; ++layer)
+        add_poured(setup, *ground + layer * setup.spacing * Vec3::UnitY(), p);
     }
   if (p.size() > 0) return p;
   const int n = std::max(2, static_cast<int>(std::cbrt(n_wanted)));
-  for (int k = 0; k < n * n * n; ++k) add_poured(setup, e.position + setup.spacing * Vec3(k % n, k / n % n, k / (n * n)), p);
+  for (int k = 0; k < n * n * n; ++k)
+    add_poured(setup, e.position + setup.spacing * Vec3(k % n, k / n % n, k / (n * n)), p);
   return p;
 }
 
@@ -99,9 +101,11 @@ void forecast_pictures(const Scene& scene, const ParticleFrame& particles, doubl
   const TrialFolder trial;
   write_particles(trial.folder.particles(1), particles);
   SurfaceMesh surface;
-  forecast.surface_seconds = scene.shot.frames * growth * seconds_of([&] {
-    surface = make_surface_files(trial.folder.particles(1), read_particles(trial.folder.particles(1)), scene, trial.folder, 1);
-  });
+  forecast.surface_seconds =
+      scene.shot.frames * growth * seconds_of([&] {
+        surface = make_surface_files(trial.folder.particles(1), read_particles(trial.folder.particles(1)), scene,
+                                     trial.folder, 1);
+      });
   RenderScene view = build_view(scene);
   const int width = view.camera.width, height = view.camera.height;
   const auto time_picture = [&](int part) {
@@ -118,12 +122,13 @@ void forecast_pictures(const Scene& scene, const ParticleFrame& particles, doubl
   forecast.render_seconds = scene.shot.frames * (small + 15.0 * per_sixteenth);
 }
 
-/// How much longer a step takes on average over a shot than at its start, where little moves: neighbours are searched for more often, more particles
-/// are at walls. Measured on ten scenes: 1.1 to 2.2, this in the middle.
+/// How much longer a step takes on average over a shot than at its start, where little moves: neighbours are searched
+/// for more often, more particles are at walls. Measured on ten scenes: 1.1 to 2.2, this in the middle.
 constexpr double activity = 1.45;
 
 template <typename Real>
-void take_trial_steps(const Scene& scene, SimulationSetup& setup, int n_trial_steps, bool with_pictures, SceneForecast& forecast) {
+void take_trial_steps(const Scene& scene, SimulationSetup& setup, int n_trial_steps, bool with_pictures,
+                      SceneForecast& forecast) {
   SolverParameters<3> parameters = setup.parameters;
   parameters.min_time_step = 0.0;  // a floor too high is something to advise on, not to stop at
   Colliders<3> colliders = build_colliders(setup);
@@ -190,7 +195,8 @@ SceneForecast forecast_scene(const Scene& scene, int n_trial_steps, bool with_pi
     take_trial_steps<float>(scene, setup, n_trial_steps, with_pictures, forecast);
   forecast.load = measure_load();
   if (forecast.load)
-    for (double* seconds : {&forecast.simulate_seconds, &forecast.surface_seconds, &forecast.render_seconds}) *seconds /= *forecast.load;
+    for (double* seconds : {&forecast.simulate_seconds, &forecast.surface_seconds, &forecast.render_seconds})
+      *seconds /= *forecast.load;
   forecast.advice = advise(setup, forecast.time_step);
   return forecast;
 }

@@ -10,7 +10,8 @@ Motion<3> to_motion(const ColliderSettings& settings, const TriangleMesh& at_res
   Motion<3> motion;
   motion.velocity = settings.velocity;
   motion.spin = to_skew(settings.angular_velocity);
-  motion.pivot = settings.pivot.value_or(at_rest.vertices.empty() ? Vec3(Vec3::Zero()) : compute_bounds(at_rest).centre());
+  motion.pivot =
+      settings.pivot.value_or(at_rest.vertices.empty() ? Vec3(Vec3::Zero()) : compute_bounds(at_rest).centre());
   motion.smooth = settings.interpolation == "smooth";
   for (const KeyframeSettings& key : settings.keyframes)
     motion.keyframes.push_back({key.time, key.translate, rotation_from_degrees(key.rotate_deg)});

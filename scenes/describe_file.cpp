@@ -20,8 +20,8 @@ namespace smelt {
 namespace {
 
 std::string describe_bounds(const Box3& b) {
-  return fmt::format("bounds     ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) m\n", b.lower[0], b.lower[1], b.lower[2], b.upper[0],
-                     b.upper[1], b.upper[2]);
+  return fmt::format("bounds     ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) m\n", b.lower[0], b.lower[1],
+                     b.lower[2], b.upper[0], b.upper[1], b.upper[2]);
 }
 
 template <typename T>
@@ -36,16 +36,22 @@ std::string describe_fields(const ParticleFrame& p) {
   std::vector<float> speed;
   for (const Vec3& x : p.position) bounds.extend(x);
   for (const Vec3f& v : p.velocity) speed.push_back(v.norm());
-  return describe_bounds(bounds) + describe_values("speed", "m/s", speed) + describe_values("density", "kg/m3", p.density) +
-         describe_values("temperature", "K", p.temperature) + describe_values("viscosity", "Pa s", p.viscosity) +
+  return describe_bounds(bounds) + describe_values("speed", "m/s", speed) +
+         describe_values("density", "kg/m3", p.density) + describe_values("temperature", "K", p.temperature) +
+         describe_values("viscosity", "Pa s", p.viscosity) +
          (p.rest.empty() ? "" : "rest       where each particle was before it moved\n");
 }
 
 std::string describe_particles(const std::filesystem::path& path) {
   const ParticleFrame p = read_particles(path);
-  const double volume = p.size() > 0 ? std::accumulate(p.density.begin(), p.density.end(), 0.0, [&](double sum, float d) { return sum + p.mass / static_cast<double>(d); }) : 0.0;
-  return fmt::format("particles  {}\nframe      {} at {:.6g} s\nspacing    {:.6g} m, smoothing length {:.6g} m, mass {:.6g} kg each\nvolume     {:.6g} m3\n",
-                     p.size(), p.frame, p.time, p.spacing, p.smoothing_length, p.mass, volume) +
+  const double volume =
+      p.size() > 0 ? std::accumulate(p.density.begin(), p.density.end(), 0.0,
+                                     [&](double sum, float d) { return sum + p.mass / static_cast<double>(d); })
+                   : 0.0;
+  return fmt::format(
+             "particles  {}\nframe      {} at {:.6g} s\nspacing    {:.6g} m, smoothing length {:.6g} m, mass {:.6g} kg "
+             "each\nvolume     {:.6g} m3\n",
+             p.size(), p.frame, p.time, p.spacing, p.smoothing_length, p.mass, volume) +
          describe_fields(p);
 }
 
@@ -64,8 +70,10 @@ std::string describe_cloud(const std::filesystem::path& path) {
 std::string describe_grids(const std::vector<GridSummary>& grids) {
   std::string text = fmt::format("grids      {}\n", grids.size());
   for (const GridSummary& g : grids) {
-    text += fmt::format("\ngrid       {}\ntype       {}, {}\nvoxels     {} active, {:.6g} m\n", g.name, g.value_type, g.grid_class, g.n_active, g.voxel_size);
-    if (g.grid_class == "level set") text += fmt::format("half width {:.6g} m, {:.3g} voxels\n", g.background, g.background / g.voxel_size);
+    text += fmt::format("\ngrid       {}\ntype       {}, {}\nvoxels     {} active, {:.6g} m\n", g.name, g.value_type,
+                        g.grid_class, g.n_active, g.voxel_size);
+    if (g.grid_class == "level set")
+      text += fmt::format("half width {:.6g} m, {:.3g} voxels\n", g.background, g.background / g.voxel_size);
     if (!g.bounds.empty()) text += describe_bounds(g.bounds);
     for (const auto& [name, value] : g.metadata) text += fmt::format("{:<10} {}\n", name, value);
   }
@@ -74,7 +82,8 @@ std::string describe_grids(const std::vector<GridSummary>& grids) {
 
 std::string describe_vdb(const std::filesystem::path& path) {
   const std::vector<GridSummary> grids = summarise_vdb(path);
-  const bool has_points = std::any_of(grids.begin(), grids.end(), [](const GridSummary& g) { return g.name == "points"; });
+  const bool has_points =
+      std::any_of(grids.begin(), grids.end(), [](const GridSummary& g) { return g.name == "points"; });
   return has_points ? describe_particles(path) : describe_grids(grids);
 }
 
@@ -84,12 +93,19 @@ std::string describe_mesh(const std::filesystem::path& path) {
   const std::size_t n_pinched = count_nonmanifold_vertices(mesh);
   const std::string closed = t.n_boundary_edges == 0 ? "yes" : fmt::format("no: {} boundary edges", t.n_boundary_edges);
   const bool is_manifold = t.n_nonmanifold_edges == 0 && n_pinched == 0 && t.n_degenerate_faces == 0;
-  const std::string manifold = is_manifold ? "yes" : fmt::format("no: {} edges of more than two faces, {} pinched vertices, {} degenerate faces",
-                                                                 t.n_nonmanifold_edges, n_pinched, t.n_degenerate_faces);
-  const std::string oriented = t.n_misoriented_edges == 0 ? "yes" : fmt::format("no: {} edges run through the same way twice", t.n_misoriented_edges);
-  return fmt::format("vertices   {}\ntriangles  {}\ncomponents {}\nEuler      {}\nclosed     {}\nmanifold   {}\noriented   {}\nvolume     {}\narea       {:.6g} m2\n",
-                     mesh.vertices.size(), mesh.triangles.size(), t.n_components, t.euler_characteristic, closed, manifold, oriented,
-                     t.closed() ? fmt::format("{:.6g} m3", compute_volume(mesh)) : "none, as it is not closed", compute_area(mesh)) +
+  const std::string manifold =
+      is_manifold ? "yes"
+                  : fmt::format("no: {} edges of more than two faces, {} pinched vertices, {} degenerate faces",
+                                t.n_nonmanifold_edges, n_pinched, t.n_degenerate_faces);
+  const std::string oriented = t.n_misoriented_edges == 0
+                                   ? "yes"
+                                   : fmt::format("no: {} edges run through the same way twice", t.n_misoriented_edges);
+  return fmt::format(
+             "vertices   {}\ntriangles  {}\ncomponents {}\nEuler      {}\nclosed     {}\nmanifold   {}\noriented   {}\n"
+             "volume     {}\narea       {:.6g} m2\n",
+             mesh.vertices.size(), mesh.triangles.size(), t.n_components, t.euler_characteristic, closed, manifold,
+             oriented, t.closed() ? fmt::format("{:.6g} m3", compute_volume(mesh)) : "none, as it is not closed",
+             compute_area(mesh)) +
          describe_bounds(compute_bounds(mesh));
 }
 
@@ -102,7 +118,8 @@ std::string describe_checkpoint(const std::filesystem::path& path) {
 bool has_faces(const std::filesystem::path& path) {
   if (path.extension() != ".ply") return false;
   const PlyHeader header = read_ply_header(path, read_file(path));
-  return std::any_of(header.elements.begin(), header.elements.end(), [](const PlyElement& e) { return e.name == "face" && e.count > 0; });
+  return std::any_of(header.elements.begin(), header.elements.end(),
+                     [](const PlyElement& e) { return e.name == "face" && e.count > 0; });
 }
 
 }  // namespace

@@ -6,7 +6,8 @@
 
 namespace smelt {
 
-/// A few lines for `smelt info`: counts, bounds, attributes; for meshes volume and whether they are closed. Throws Error.
+/// A few lines for `smelt info`: counts, bounds, attributes; for meshes volume and whether they are closed. Throws
+/// Error.
 std::string describe_file(const std::filesystem::path& path);
 
 }  // namespace smelt

@@ -38,22 +38,29 @@ Quantity pressure_of(const Scene& scene) {
   const double density = scene.materials.front().density;
   for (const MaterialSettings& material : scene.materials)
     if (material.density != density)
-      fail("--colour-by pressure: the scene's materials differ in density, and caches do not say which particle is of which; choose density");
-  const double c = scene.solver.sound_speed ? *scene.solver.sound_speed : build_simulation(scene).parameters.sound_speed;
+      fail(
+          "--colour-by pressure: the scene's materials differ in density, and caches do not say which particle is of "
+          "which; choose density");
+  const double c =
+      scene.solver.sound_speed ? *scene.solver.sound_speed : build_simulation(scene).parameters.sound_speed;
   EquationOfState state;
   state.law = scene.solver.equation_of_state == "tait" ? PressureLaw::tait : PressureLaw::linear;
   state.background_pressure = scene.solver.background_pressure;
   return {"pressure [Pa]", false, [=](const ParticleFrame& p) {
             std::vector<float> values;
-            for (const float rho : p.density) values.push_back(static_cast<float>(compute_pressure(state, c, density, static_cast<double>(rho), 0.0)));
+            for (const float rho : p.density)
+              values.push_back(static_cast<float>(compute_pressure(state, c, density, static_cast<double>(rho), 0.0)));
             return values;
           }};
 }
 
 Quantity to_quantity(const Scene& scene, const std::string& name) {
   if (name == "temperature")
-    return {"temperature [K]", false, [](const ParticleFrame& p) { return require(p.temperature, p.size(), "temperature"); }};
-  if (name == "viscosity") return {"viscosity [Pa s]", true, [](const ParticleFrame& p) { return require(p.viscosity, p.size(), "viscosity"); }};
+    return {"temperature [K]", false,
+            [](const ParticleFrame& p) { return require(p.temperature, p.size(), "temperature"); }};
+  if (name == "viscosity")
+    return {"viscosity [Pa s]", true,
+            [](const ParticleFrame& p) { return require(p.viscosity, p.size(), "viscosity"); }};
   if (name == "density") return {"density [kg/m3]", false, [](const ParticleFrame& p) { return p.density; }};
   if (name == "pressure") return pressure_of(scene);
   CHECK_EQ(name, "speed");
@@ -94,7 +101,9 @@ ColourScale to_scale(const Quantity& quantity, const PictureRequest& request, co
 }
 
 SurfaceOverlay to_overlay(const std::string& name) {
-  return name == "wire" ? SurfaceOverlay::wire : name == "translucent" ? SurfaceOverlay::translucent : SurfaceOverlay::none;
+  return name == "wire"          ? SurfaceOverlay::wire
+         : name == "translucent" ? SurfaceOverlay::translucent
+                                 : SurfaceOverlay::none;
 }
 
 }  // namespace
@@ -103,18 +112,22 @@ std::vector<int> choose_sheet_frames(const FrameRange& frames, int n) {
   const int count = std::min(n, frames.last - frames.first + 1);
   std::vector<int> chosen;
   for (int k = 0; k < count; ++k)
-    chosen.push_back(count == 1 ? frames.first
-                                : frames.first + static_cast<int>(std::lround(static_cast<double>(frames.last - frames.first) * k / (count - 1))));
+    chosen.push_back(count == 1
+                         ? frames.first
+                         : frames.first + static_cast<int>(std::lround(static_cast<double>(frames.last - frames.first) *
+                                                                       k / (count - 1))));
   return chosen;
 }
 
-void diagnose_frames(const Scene& scene, const OutputFolder& folder, const FrameRange& frames, const PictureRequest& request, Progress& progress) {
+void diagnose_frames(const Scene& scene, const OutputFolder& folder, const FrameRange& frames,
+                     const PictureRequest& request, Progress& progress) {
   const Quantity quantity = to_quantity(scene, request.colour_by);
   const SurfaceOverlay overlay = to_overlay(request.overlay);
   RenderScene view = build_view(scene);
   const Camera camera = view.camera;
   const auto colliders_at_rest = view.colliders;
-  const bool has_bodies = std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const ColliderSettings& c) { return c.rigid(); });
+  const bool has_bodies =
+      std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const ColliderSettings& c) { return c.rigid(); });
   create_directories_or_fail(folder.diagnostic(request.colour_by, 1).parent_path());
 
   std::vector<int> chosen;
@@ -152,9 +165,11 @@ void diagnose_frames(const Scene& scene, const OutputFolder& folder, const Frame
       const std::vector<float> values = quantity.values(particles);
       SurfaceMesh surface;
       if (overlay != SurfaceOverlay::none) surface = read_surface(folder.surface_obj(frame), folder.surface_vdb(frame));
-      const std::string stamp = fmt::format("{}  frame {}  t = {:.3f} s  {} particles", scene.shot.name, frame, time, particles.size());
+      const std::string stamp =
+          fmt::format("{}  frame {}  t = {:.3f} s  {} particles", scene.shot.name, frame, time, particles.size());
       // Half the spacing: neighbours touch.
-      const DiagnosticPicture picture{particles.position, values, 0.5 * particles.spacing, scale, stamp, &surface, overlay};
+      const DiagnosticPicture picture{particles.position, values, 0.5 * particles.spacing, scale, stamp,
+                                      &surface,           overlay};
       write_png(folder.diagnostic(request.colour_by, frame), draw_diagnostic(picture, view));
     });
   }
@@ -164,7 +179,8 @@ void diagnose_frames(const Scene& scene, const OutputFolder& folder, const Frame
 std::filesystem::path write_sheet(const OutputFolder& folder, const FrameRange& frames, const PictureRequest& request) {
   std::vector<ImageRgb8> pictures;
   for (const int frame : choose_sheet_frames(frames, request.sheet_columns * request.sheet_rows))
-    pictures.push_back(read_png(request.diagnostic ? folder.diagnostic(request.colour_by, frame) : folder.picture(frame)));
+    pictures.push_back(
+        read_png(request.diagnostic ? folder.diagnostic(request.colour_by, frame) : folder.picture(frame)));
   const auto path = request.diagnostic ? folder.sheet(request.colour_by) : folder.sheet();
   write_png(path, make_contact_sheet(pictures, request.sheet_columns));
   return path;

@@ -24,14 +24,16 @@ struct Layer {
   double width;    ///< of the pile: as thick as this it is as steep as can be [m]
 
   FlowCurve curve() const {
-    return material.heat ? flow_curve_at(material.rheology, 1.0, material.heat->hot) : flow_curve_at(material.rheology, 0.0);
+    return material.heat ? flow_curve_at(material.rheology, 1.0, material.heat->hot)
+                         : flow_curve_at(material.rheology, 0.0);
   }
 
   /// Of its surface [m/s].
   double speed(double thickness) const {
     const FlowCurve c = curve();
     if (c.yield_stress == 0.0 && c.consistency == 0.0) return std::numeric_limits<double>::infinity();
-    const double stress = material.density * gravity * std::max(slope, std::min(1.0, thickness / width)) * thickness, fastest_rate = 1e3 * fastest / thickness;
+    const double stress = material.density * gravity * std::max(slope, std::min(1.0, thickness / width)) * thickness,
+                 fastest_rate = 1e3 * fastest / thickness;
     // The spring takes next to nothing: it keeps the rate finite.
     return relaxed_shear_rate(c, stress / fastest_rate, stress, 0.0) * thickness * c.index / (c.index + 1.0);
   }
@@ -90,7 +92,8 @@ double fall_of_bodies(const SimulationSetup& setup, const Colliders<3>& collider
   const Vec3 across = down.unitOrthogonal(), aside = down.cross(across);
   std::map<std::pair<long, long>, Vec3> lowest;
   for (const Vec3& x : setup.particles.position) {
-    const auto column = std::pair(std::lround(x.dot(across) / setup.spacing), std::lround(x.dot(aside) / setup.spacing));
+    const auto column =
+        std::pair(std::lround(x.dot(across) / setup.spacing), std::lround(x.dot(aside) / setup.spacing));
     const auto [place, is_new] = lowest.emplace(column, x);
     if (!is_new && x.dot(down) > place->second.dot(down)) place->second = x;
   }
@@ -103,7 +106,8 @@ double fall_of_bodies(const SimulationSetup& setup, const Colliders<3>& collider
 
 ExpectedSpeed expect_speed(const SimulationSetup& setup) {
   const SolverParameters<3>& p = setup.parameters;
-  const double g = p.gravity.norm(), free_fall = setup.expected_speed - setup.fastest_start, drop = free_fall * free_fall / (2.0 * g);
+  const double g = p.gravity.norm(), free_fall = setup.expected_speed - setup.fastest_start,
+               drop = free_fall * free_fall / (2.0 * g);
   if (!(free_fall > 0.0)) return {setup.expected_speed, "that of the fastest start"};
   const Vec3 down = p.gravity / g;
   Colliders<3> colliders = build_colliders(setup);
@@ -113,13 +117,16 @@ ExpectedSpeed expect_speed(const SimulationSetup& setup) {
     if (speed > largest.speed) largest = {speed, reason};
   };
   const auto consider_layer = [&](const Layer& layer, double thickness, double fall) {
-    consider(std::hypot(setup.fastest_start, std::sqrt(2.0 * g * fall)), fmt::format("of a fall of {:.3g} m, from where it starts to what is below", fall));
+    consider(std::hypot(setup.fastest_start, std::sqrt(2.0 * g * fall)),
+             fmt::format("of a fall of {:.3g} m, from where it starts to what is below", fall));
     consider(layer.speed(thickness), fmt::format("of \"{}\" in a layer {:.3g} m thick down the steepest that it meets",
                                                  layer.material.name, thickness));
-    consider(std::sqrt(g * thickness), fmt::format("with which \"{}\" is compressed by its own weight, {:.3g} m deep", layer.material.name, thickness));
+    consider(std::sqrt(g * thickness), fmt::format("with which \"{}\" is compressed by its own weight, {:.3g} m deep",
+                                                   layer.material.name, thickness));
   };
   if (setup.particles.size() > 0) {
-    const double height = setup.body_bounds.extent().dot(down.cwiseAbs()), fall = fall_of_bodies(setup, colliders, down, drop);
+    const double height = setup.body_bounds.extent().dot(down.cwiseAbs()),
+                 fall = fall_of_bodies(setup, colliders, down, drop);
     std::vector<bool> present(setup.materials.size(), setup.particles.material.empty());
     for (const std::uint8_t m : setup.particles.material) present[m] = true;
     for (std::size_t m = 0; m < present.size(); ++m)

@@ -4,8 +4,8 @@
 
 namespace smelt {
 
-std::optional<std::filesystem::path> encode_film(const OutputFolder& folder, const std::string& name, int n_frames, double fps,
-                                                 std::string& why_not) {
+std::optional<std::filesystem::path> encode_film(const OutputFolder& folder, const std::string& name, int n_frames,
+                                                 double fps, std::string& why_not) {
   for (int frame = 1; frame <= n_frames; ++frame) {
     if (std::filesystem::exists(folder.picture(frame))) continue;
     why_not = fmt::format("frame {} is missing", frame);
@@ -13,10 +13,31 @@ std::optional<std::filesystem::path> encode_film(const OutputFolder& folder, con
   }
   const auto film = folder.root / (name + ".mp4");
   const auto temporary = folder.root / (name + ".tmp.mp4");
-  const int status = run_program({"ffmpeg", "-y", "-loglevel", "error", "-framerate", fmt::format("{}", fps), "-start_number", "1", "-i",
-                                  (folder.frames() / "frame.%04d.png").string(), "-frames:v", fmt::to_string(n_frames), "-vf",
-                                  "crop=trunc(iw/2)*2:trunc(ih/2)*2", "-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt",
-                                  "yuv420p", "-movflags", "+faststart", temporary.string()});
+  const int status = run_program({"ffmpeg",
+                                  "-y",
+                                  "-loglevel",
+                                  "error",
+                                  "-framerate",
+                                  fmt::format("{}", fps),
+                                  "-start_number",
+                                  "1",
+                                  "-i",
+                                  (folder.frames() / "frame.%04d.png").string(),
+                                  "-frames:v",
+                                  fmt::to_string(n_frames),
+                                  "-vf",
+                                  "crop=trunc(iw/2)*2:trunc(ih/2)*2",
+                                  "-c:v",
+                                  "libx264",
+                                  "-preset",
+                                  "veryfast",
+                                  "-crf",
+                                  "18",
+                                  "-pix_fmt",
+                                  "yuv420p",
+                                  "-movflags",
+                                  "+faststart",
+                                  temporary.string()});
   if (status == 0) {
     std::filesystem::rename(temporary, film);
     return film;

@@ -41,7 +41,8 @@ Solver<3, float> make_fixed_work() {
 }  // namespace
 
 std::filesystem::path pace_file() {
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache) return std::filesystem::path(cache) / "smelt" / "pace.json";
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache && *cache)
+    return std::filesystem::path(cache) / "smelt" / "pace.json";
   const char* home = std::getenv("HOME");
   return std::filesystem::path(home && *home ? home : "/tmp") / ".cache" / "smelt" / "pace.json";
 }
@@ -74,7 +75,9 @@ std::optional<double> measure_load() {
   if (!pace.is_object() || !pace.contains("fixed_work_seconds") || !pace["fixed_work_seconds"].is_number())
     fail("{}: not a pace; `./smelt bench --calibrate` writes it anew", pace_file().string());
   const double calibrated = pace["fixed_work_seconds"];
-  if (!(calibrated > 0.0)) fail("{}: fixed_work_seconds must be > 0, is {}; `./smelt bench --calibrate` writes it anew", pace_file().string(), calibrated);
+  if (!(calibrated > 0.0))
+    fail("{}: fixed_work_seconds must be > 0, is {}; `./smelt bench --calibrate` writes it anew", pace_file().string(),
+         calibrated);
   return std::max(1.0, time_fixed_work() / calibrated);
 }
 

@@ -1,5 +1,6 @@
 #pragma once
-// How fast this machine is when nothing else runs on it, so that a forecast made while it is busy holds for when it is not.
+// How fast this machine is when nothing else runs on it, so that a forecast made while it is busy holds for when it is
+// not.
 
 #include <filesystem>
 #include <optional>
@@ -15,7 +16,8 @@ double time_fixed_work();
 /// Measures it, for an idle machine, and keeps it. Throws Error where it cannot be written.
 double calibrate_pace();
 
-/// How many times as long work takes now as it took when the machine was calibrated, at least 1; nothing where it never was.
+/// How many times as long work takes now as it took when the machine was calibrated, at least 1; nothing where it never
+/// was.
 std::optional<double> measure_load();
 
 }  // namespace smelt

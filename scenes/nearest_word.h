@@ -26,14 +26,15 @@ inline std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// The known word that is nearest to `word`, if any is near: up to half its letters differ, or one is the start of the other
-/// (a key without its unit). The first of equals.
+/// The known word that is nearest to `word`, if any is near: up to half its letters differ, or one is the start of the
+/// other (a key without its unit). The first of equals.
 inline std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& known) {
   std::optional<std::string> best;
   std::size_t best_distance = std::max<std::size_t>(word.size() / 2, 1) + 1;
   for (const std::string& candidate : known) {
     std::size_t distance = edit_distance(word, candidate);
-    if (word.size() >= 3 && (candidate.starts_with(word) || word.starts_with(candidate))) distance = std::min<std::size_t>(distance, 1);
+    if (word.size() >= 3 && (candidate.starts_with(word) || word.starts_with(candidate)))
+      distance = std::min<std::size_t>(distance, 1);
     if (distance < best_distance) {
       best = candidate;
       best_distance = distance;

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/geometry/inside.h"
+#include "core/geometry/orientation.h"
 #include "core/geometry/simplex_bvh.h"
 #include "scenes/collider_motion.h"
 
@@ -12,8 +13,16 @@ namespace smelt {
 
 namespace {
 
+/// Puts the line of the scene file that names collider `k` before every warning from `first` on.
+void say_where(const Scene& scene, std::size_t k, std::size_t first, std::vector<std::string>& warnings) {
+  const std::string where = scene.places.find(fmt::format("collider.{}.mesh", k)).text;
+  for (std::size_t w = first; w < warnings.size(); ++w) warnings[w] = fmt::format("{}: {}", where, warnings[w]);
+}
+
 /// One particle of all of them, in words.
-std::string place_of(const Vec3& x) { return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", x[0], x[1], x[2]); }
+std::string place_of(const Vec3& x) {
+  return fmt::format("({:.4g}, {:.4g}, {:.4g}) m", x[0], x[1], x[2]);
+}
 
 std::string size_of(const Box3& bounds) {
   const Vec3 e = bounds.extent();
@@ -21,17 +30,26 @@ std::string size_of(const Box3& bounds) {
 }
 
 /// A thousand times too large or too small is millimetres for metres, or the other way round.
-void warn_about_size(const std::string& name, const Box3& bounds, double spacing, SimulationSetup& setup) {
-  if (setup.particles.size() == 0) return;  // all of it will be poured
-  const double size = bounds.extent().maxCoeff(), bodies = setup.body_bounds.extent().maxCoeff();
+void warn_about_size(const Scene& scene, const std::string& name, const Box3& bounds, double spacing,
+                     SimulationSetup& setup) {
+  // Vents are small beside the ground that they stand on: the pile of what they pour is what will meet it.
+  const bool poured = setup.particles.size() == 0;
+  double fluid = poured ? 0.0 : setup.body_bounds.extent().maxCoeff();
+  if (poured)
+    for (const EmitterSettings& e : scene.emitters) fluid = std::max(fluid, pile_size(scene, e));
+  const double size = bounds.extent().maxCoeff();
+  const std::string beside = poured ? fmt::format("what is poured, a cube of {:.3g} m", fluid)
+                                    : fmt::format("bodies of {}", size_of(setup.body_bounds));
   constexpr double suspicious = 900.0;
-  if (size > suspicious * bodies)
-    setup.warnings.push_back(fmt::format("{}: the collider is enormous, {}, beside bodies of {}; if it was made in millimetres, set scale = 0.001", name,
-                                         size_of(bounds), size_of(setup.body_bounds)));
-  else if (size < bodies / suspicious || size < spacing)
-    setup.warnings.push_back(fmt::format("{}: the collider is tiny, {}, beside bodies of {} and particles {:.3g} m apart; if it was made in other units, "
-                                         "set scale, for instance to 1000",
-                                         name, size_of(bounds), size_of(setup.body_bounds), spacing));
+  if (size > suspicious * fluid)
+    setup.warnings.push_back(
+        fmt::format("{}: the collider is enormous, {}, beside {}; if it was made in millimetres, set scale = 0.001",
+                    name, size_of(bounds), beside));
+  else if (size < fluid / suspicious || size < spacing)
+    setup.warnings.push_back(fmt::format(
+        "{}: the collider is tiny, {}, beside {} and particles {:.3g} m apart; if it was made in other units, set "
+        "scale, for instance to 1000",
+        name, size_of(bounds), beside, spacing));
 }
 
 /// Which particles lie inside a closed mesh.
@@ -45,16 +63,19 @@ std::vector<bool> find_inside(const TriangleMesh& mesh, const std::vector<Vec3>&
 }
 
 /// Whether the closed mesh holds all of some body. Throws where it holds most of one.
-bool is_container(const Scene& scene, const std::string& name, const std::vector<bool>& inside, const std::vector<std::size_t>& first) {
+bool is_container(const Scene& scene, const std::string& name, const std::vector<bool>& inside,
+                  const std::vector<std::size_t>& first) {
   bool container = false;
   for (std::size_t k = 0; k + 1 < first.size(); ++k) {
-    const auto begin = inside.begin() + static_cast<std::ptrdiff_t>(first[k]), end = inside.begin() + static_cast<std::ptrdiff_t>(first[k + 1]);
+    const auto begin = inside.begin() + static_cast<std::ptrdiff_t>(first[k]),
+               end = inside.begin() + static_cast<std::ptrdiff_t>(first[k + 1]);
     const auto n_in = std::count(begin, end, true), n = end - begin;
     if (n > 0 && n_in == n) container = true;
     if (2 * n_in > n && n_in < n)
-      fail("{}: {} of the {} particles of the body {} start inside this closed collider and the rest outside; a vessel must hold all of a body, a solid "
-           "should hold none of it: move or scale one of them",
-           name, n_in, n, scene.bodies[k].mesh);
+      fail(
+          "{}: {} of the {} particles of the body {} start inside this closed collider and the rest outside; a vessel "
+          "must hold all of a body, a solid should hold none of it: move or scale one of them",
+          name, n_in, n, scene.bodies[k].mesh);
   }
   return container;
 }
@@ -74,11 +95,13 @@ void leave_out(const std::vector<bool>& which, SimulationSetup& setup) {
   for (std::size_t i = 0; i < left; ++i) setup.particles.id[i] = static_cast<std::int32_t>(i);
 }
 
-/// What particles a sheet stands between: it is crossed on the way of a spacing along some axis from one to where another must be.
+/// What particles a sheet stands between: it is crossed on the way of a spacing along some axis from one to where
+/// another must be.
 void warn_about_cuts(const std::string& name, const TriangleMesh& mesh, double spacing, SimulationSetup& setup) {
   if (setup.particles.size() == 0) return;
   std::vector<Simplex<3>> facets;
-  for (const auto& t : mesh.triangles) facets.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
+  for (const auto& t : mesh.triangles)
+    facets.push_back({mesh.vertices[t[0]], mesh.vertices[t[1]], mesh.vertices[t[2]]});
   const SimplexBvh<3> bvh(std::move(facets));
   // Particles by the cell of their lattice, to know where another one is.
   const auto cell_of = [&](const Vec3& x) {
@@ -103,25 +126,34 @@ void warn_about_cuts(const std::string& name, const TriangleMesh& mesh, double s
     if (cut && n_cut++ == 0) where = x;
   }
   if (n_cut > 0)
-    setup.warnings.push_back(fmt::format("{}: the collider cuts through a body, between {} particles and their neighbours, first at {}; what starts behind it "
-                                         "stays there: move one of them unless that is meant",
-                                         name, n_cut, place_of(where)));
+    setup.warnings.push_back(fmt::format(
+        "{}: the collider cuts through a body, between {} particles and their neighbours, first at {}; what starts "
+        "behind it stays there: move one of them unless that is meant",
+        name, n_cut, place_of(where)));
 }
 
-void prepare_collider(const Scene& scene, std::size_t k, double spacing, std::vector<std::size_t>& first, SimulationSetup& setup) {
+void prepare_collider(const Scene& scene, std::size_t k, double spacing, std::vector<std::size_t>& first,
+                      SimulationSetup& setup) {
   const std::string& name = scene.colliders[k].mesh;
   const Motion<3>& motion = setup.obstacles[k].motion;
-  const TriangleMesh mesh = motion.still() ? setup.colliders[k] : moved(setup.colliders[k], pose_at(motion, 0.0));  // where it starts
-  warn_about_size(name, compute_bounds(mesh), spacing, setup);
+  const TriangleMesh mesh =
+      motion.still() ? setup.colliders[k] : moved(setup.colliders[k], pose_at(motion, 0.0));  // where it starts
+  warn_about_size(scene, name, compute_bounds(mesh), spacing, setup);
 
   const MeshTopology topology = compute_topology(mesh);
   if (!topology.closed()) {
-    const std::size_t n_faults = topology.n_boundary_edges + topology.n_nonmanifold_edges + topology.n_misoriented_edges;
+    const std::size_t n_faults =
+        topology.n_boundary_edges + topology.n_nonmanifold_edges + topology.n_misoriented_edges;
     // A terrain is open on purpose. A body with a few holes was meant to be closed.
-    if (static_cast<double>(n_faults) < 0.05 * static_cast<double>(mesh.triangles.size()) || topology.n_boundary_edges == 0)
-      setup.warnings.push_back(fmt::format("{}: the collider is not quite closed ({} open edges, {} with more than two faces, {} between faces wound against "
-                                           "each other): taken for a sheet with two sides, not for a solid",
-                                           name, topology.n_boundary_edges, topology.n_nonmanifold_edges, topology.n_misoriented_edges));
+    if (static_cast<double>(n_faults) < 0.05 * static_cast<double>(mesh.triangles.size()) ||
+        topology.n_boundary_edges == 0)
+      setup.warnings.push_back(fmt::format(
+          "{}: the collider is not quite closed ({} open edges, {} with more than two faces, {} between faces wound "
+          "against each other): taken for a sheet with two sides, not for a solid",
+          name, topology.n_boundary_edges, topology.n_nonmanifold_edges, topology.n_misoriented_edges));
+    // A sheet has two sides, and fluid stays on that which it starts on: looking up, it is the ground of what is above.
+    if (compute_vector_area(mesh)[1] < 0.0)
+      for (auto& t : setup.colliders[k].triangles) std::swap(t[1], t[2]);
     return warn_about_cuts(name, mesh, spacing, setup);
   }
 
@@ -130,34 +162,57 @@ void prepare_collider(const Scene& scene, std::size_t k, double spacing, std::ve
   setup.obstacles[k].closed = true;
   if (compute_volume(mesh) < 0.0) {
     for (auto& t : setup.colliders[k].triangles) std::swap(t[1], t[2]);
-    setup.warnings.push_back(fmt::format("{}: the collider's faces are wound inward and no body is in it: turned outward, so that it is solid inside", name));
+    setup.warnings.push_back(fmt::format(
+        "{}: the collider's faces are wound inward and no body is in it: turned outward, so that it is solid inside",
+        name));
   }
   const auto n_inside = static_cast<std::size_t>(std::count(inside.begin(), inside.end(), true));
   if (n_inside == 0) return;
   std::vector<std::size_t> left(first.size(), 0);
   for (std::size_t b = 0; b + 1 < first.size(); ++b) {
-    const auto begin = inside.begin() + static_cast<std::ptrdiff_t>(first[b]), end = inside.begin() + static_cast<std::ptrdiff_t>(first[b + 1]);
+    const auto begin = inside.begin() + static_cast<std::ptrdiff_t>(first[b]),
+               end = inside.begin() + static_cast<std::ptrdiff_t>(first[b + 1]);
     left[b + 1] = left[b] + static_cast<std::size_t>(std::count(begin, end, false));
   }
-  setup.warnings.push_back(fmt::format("{}: {} of {} particles would start inside this solid collider, first at {}: left out, with their volume", name, n_inside,
-                                       setup.particles.size(),
-                                       place_of(setup.particles.position[static_cast<std::size_t>(std::find(inside.begin(), inside.end(), true) - inside.begin())])));
+  setup.warnings.push_back(fmt::format(
+      "{}: {} of {} particles would start inside this solid collider, first at {}: left out, with their volume", name,
+      n_inside, setup.particles.size(),
+      place_of(setup.particles.position[static_cast<std::size_t>(std::find(inside.begin(), inside.end(), true) -
+                                                                 inside.begin())])));
   leave_out(inside, setup);
   first = left;
 }
 
 }  // namespace
 
+void wind_collider(const Scene& scene, std::size_t k, TriangleMesh& mesh, std::vector<std::string>& warnings) {
+  const std::string& name = scene.colliders[k].mesh;
+  const std::size_t n_warnings = warnings.size(), n_faces = mesh.triangles.size();
+  const Orientation found = orient(mesh);
+  if (found.n_dropped > 0)
+    warnings.push_back(
+        fmt::format("{}: {} of the collider's {} faces lie on others: left out", name, found.n_dropped, n_faces));
+  if (found.n_turned > 0)
+    warnings.push_back(
+        fmt::format("{}: {} of the collider's {} faces were wound against their neighbours: turned round", name,
+                    found.n_turned, mesh.triangles.size()));
+  if (!found.orientable && scene.colliders[k].wall)
+    warnings.push_back(fmt::format(
+        "{}: the collider's faces cannot be wound alike, it has one side only (as a Moebius strip): pressure and shear "
+        "along it are wrong; mend the mesh, or set wall = false",
+        name));
+  say_where(scene, k, n_warnings, warnings);
+}
+
 void prepare_colliders(const Scene& scene, const std::vector<std::size_t>& first, SimulationSetup& setup) {
-  const double spacing = std::cbrt(setup.body_volume / static_cast<double>(std::max<std::size_t>(setup.particles.size(), 1)));
+  const auto n = setup.particles.size();
+  const double spacing = n > 0 ? std::cbrt(setup.body_volume / static_cast<double>(n)) : *scene.particles.spacing;
   std::vector<std::size_t> now = first;
   for (std::size_t k = 0; k < setup.colliders.size(); ++k) {
     if (scene.colliders[k].mesh == "ground") continue;
-    const std::string key = fmt::format("collider.{}.mesh", k);
     const std::size_t n_warnings = setup.warnings.size();
-    blame(scene.places, key, [&] { prepare_collider(scene, k, spacing, now, setup); });
-    for (std::size_t w = n_warnings; w < setup.warnings.size(); ++w)
-      setup.warnings[w] = fmt::format("{}: {}", scene.places.find(key).text, setup.warnings[w]);
+    blame(scene.places, fmt::format("collider.{}.mesh", k), [&] { prepare_collider(scene, k, spacing, now, setup); });
+    say_where(scene, k, n_warnings, setup.warnings);
   }
 }
 

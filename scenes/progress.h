@@ -7,8 +7,8 @@ namespace smelt {
 
 /// Where a stage is.
 struct ProgressState {
-  std::string stage;      ///< "simulate", "surface", "render"
-  int frame = 0;          ///< being worked on
+  std::string stage;  ///< "simulate", "surface", "render"
+  int frame = 0;      ///< being worked on
   int first_frame = 1;
   int last_frame = 1;
   double fraction = 0.0;  ///< of the frame that is done, in [0, 1]

@@ -21,7 +21,9 @@ bool is_done(const Scene& scene, const OutputFolder& folder, int frame) {
 
 /// The PNG last: where it is, the frame is whole.
 void write_pictures(const Scene& scene, const OutputFolder& folder, int frame, const Film& film, const Vec3& eye) {
-  const ToneCurve curve = scene.look.tone_curve.value_or(scene.look.material == "lava" ? "film" : "neutral") == "film" ? ToneCurve::film : ToneCurve::neutral;
+  const ToneCurve curve = scene.look.tone_curve.value_or(scene.look.material == "lava" ? "film" : "neutral") == "film"
+                              ? ToneCurve::film
+                              : ToneCurve::neutral;
   if (scene.render.exr) write_exr(folder.exr(frame), to_layers(film, eye));
   if (scene.render.png_bits == 16)
     write_png(folder.picture(frame), develop16(film, scene.look.exposure, curve));
@@ -31,7 +33,8 @@ void write_pictures(const Scene& scene, const OutputFolder& folder, int frame, c
 
 }  // namespace
 
-void render_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report, Progress& progress) {
+void render_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report,
+                   Progress& progress) {
   RenderScene view = build_view(scene);
   const Camera camera = view.camera;
   const auto colliders_at_rest = view.colliders;

@@ -8,7 +8,8 @@ namespace smelt {
 
 RestPositions::RestPositions(const SolverParameters<3>& parameters) {
   for (const Emitter<3>& e : parameters.emitters) {
-    const auto layers = compute_emitter_layers(e, parameters.particle_volume, kernel_kappa(parameters.kernel) * parameters.smoothing_length);
+    const auto layers = compute_emitter_layers(e, parameters.particle_volume,
+                                               kernel_kappa(parameters.kernel) * parameters.smoothing_length);
     vents_.push_back({e.position, layers.speed * e.direction, e.start});
   }
 }

@@ -62,7 +62,8 @@ void StepStatistics::add(const TimeStep& step) {
   ++n_by_term[static_cast<std::size_t>(step.term)];
 }
 
-RunReport::RunReport(std::filesystem::path path, bool keep) : path_(std::move(path)), document_(std::make_unique<Document>()) {
+RunReport::RunReport(std::filesystem::path path, bool keep)
+    : path_(std::move(path)), document_(std::make_unique<Document>()) {
   if (!keep || !std::filesystem::exists(path_)) return;
   ordered_json old = ordered_json::parse(read_file(path_), nullptr, /*allow_exceptions=*/false);
   if (old.is_object()) document_->root = std::move(old);
@@ -120,7 +121,8 @@ void RunReport::set_simulated(int frame, double time, const StepStatistics& step
   save();
 }
 
-void RunReport::set_surfaced(int frame, double volume, std::size_t n_vertices, std::size_t n_triangles, const StageCost& cost) {
+void RunReport::set_surfaced(int frame, double volume, std::size_t n_vertices, std::size_t n_triangles,
+                             const StageCost& cost) {
   ordered_json entry = {{"volume_m3", volume}, {"vertices", n_vertices}, {"triangles", n_triangles}};
   entry.update(cost_json(cost));
   document_->frame(frame)["surface"] = entry;

@@ -56,7 +56,8 @@ struct StageCost {
   std::uintmax_t bytes = 0;  ///< written
 };
 
-/// Keeps run.json up to date: each set_... replaces that stage of that frame and saves, so that a killed run leaves a true report.
+/// Keeps run.json up to date: each set_... replaces that stage of that frame and saves, so that a killed run leaves a
+/// true report.
 class RunReport {
  public:
   /// Goes on from an existing report where `keep` is set and there is a readable one.
@@ -64,11 +65,11 @@ class RunReport {
   ~RunReport();
 
   void set_run(const std::string& scene_text, std::uint64_t scene_hash, double spacing, double body_volume);
-  /// `mass` is absent in a scene without emitters and outflow, `bodies` empty in one without rigid bodies. `heat`: what passed since the frame
-  /// before; absent where no specific heat is known.
+  /// `mass` is absent in a scene without emitters and outflow, `bodies` empty in one without rigid bodies. `heat`: what
+  /// passed since the frame before; absent where no specific heat is known.
   void set_simulated(int frame, double time, const StepStatistics& steps, const Diagnostics<3>& diagnostics,
-                     const std::optional<MassAccount>& mass, const std::optional<HeatLedger>& heat, const std::vector<BodyPose>& bodies,
-                     const StageCost& cost);
+                     const std::optional<MassAccount>& mass, const std::optional<HeatLedger>& heat,
+                     const std::vector<BodyPose>& bodies, const StageCost& cost);
   void set_surfaced(int frame, double volume, std::size_t n_vertices, std::size_t n_triangles, const StageCost& cost);
   /// `clamped_share`: of the picture's light, what the firefly limit took away.
   void set_rendered(int frame, double clamped_share, const StageCost& cost);

@@ -15,7 +15,8 @@ namespace smelt {
 namespace {
 
 OutputFolder output_folder(const Scene& scene, const RunOptions& options) {
-  return {std::filesystem::absolute(options.folder.empty() ? std::filesystem::path("out") / scene.shot.name : options.folder)};
+  return {std::filesystem::absolute(options.folder.empty() ? std::filesystem::path("out") / scene.shot.name
+                                                           : options.folder)};
 }
 
 double timed(const std::function<void()>& work) {
@@ -33,7 +34,9 @@ void move_aside(const OutputFolder& folder, Progress& progress) {
     if (std::filesystem::exists(aside)) continue;
     std::error_code error;
     std::filesystem::rename(folder.root, aside, error);
-    if (error) fail("{}: cannot move the earlier result aside: {}; use another folder (-o) or --resume", folder.root.string(), error.message());
+    if (error)
+      fail("{}: cannot move the earlier result aside: {}; use another folder (-o) or --resume", folder.root.string(),
+           error.message());
     progress.message(fmt::format("moved the earlier result to {} (--resume goes on from it instead)", aside.string()));
     return;
   }
@@ -63,8 +66,8 @@ Kept judge_kept(const OutputFolder& folder, const Scene& scene, bool resume) {
 }
 
 /// The pictures asked for: the scene's own or diagnostic ones; for a sheet only those on it.
-void draw_pictures(const Scene& scene, const OutputFolder& folder, const StageOptions& options, const PictureRequest& request, RunReport& report,
-                   Progress& progress) {
+void draw_pictures(const Scene& scene, const OutputFolder& folder, const StageOptions& options,
+                   const PictureRequest& request, RunReport& report, Progress& progress) {
   if (request.diagnostic) return diagnose_frames(scene, folder, options.frames, request, progress);
   if (request.sheet_columns == 0) return render_frames(scene, folder, options, report, progress);
   for (const int frame : choose_sheet_frames(options.frames, request.sheet_columns * request.sheet_rows))
@@ -120,13 +123,19 @@ RunSummary run_stage(const Scene& scene, Stage stage, const RunOptions& options,
   RunReport report(folder.report(), stage != Stage::simulate || options.resume);
   switch (stage) {
     case Stage::simulate:
-      summary.simulate_seconds = timed([&] { simulate_frames(scene, folder, {summary.frames, options.resume}, report, progress); });
+      summary.simulate_seconds = timed([&] {
+        simulate_frames(scene, folder, {summary.frames, options.resume}, report, progress);
+      });
       break;
     case Stage::surface:
-      summary.surface_seconds = timed([&] { surface_frames(scene, folder, {summary.frames, kept.surface}, report, progress); });
+      summary.surface_seconds = timed([&] {
+        surface_frames(scene, folder, {summary.frames, kept.surface}, report, progress);
+      });
       break;
     case Stage::render:
-      summary.render_seconds = timed([&] { draw_pictures(scene, folder, {summary.frames, kept.render}, options.pictures, report, progress); });
+      summary.render_seconds = timed([&] {
+        draw_pictures(scene, folder, {summary.frames, kept.render}, options.pictures, report, progress);
+      });
       if (options.pictures.sheet_columns > 0) summary.sheet = write_sheet(folder, summary.frames, options.pictures);
       break;
   }

@@ -1,6 +1,6 @@
 #pragma once
 // The description of a shot, as a scene file states it. Units are SI and kelvin; defaults are the initial values here.
-// What each key means stands in scenes/scene_schema.cpp, from which docs/scene.md is made.
+// What each key means stands in scenes/simulation_schema.cpp and picture_schema.cpp, from which docs/scene.md is made.
 
 #include "core/geometry/vec.h"
 #include "core/sph/material.h"
@@ -262,9 +262,10 @@ struct RenderSettings {
 
 /// Which files a surface becomes, beside the OBJ with its level set.
 struct SurfaceOutputs {
-  bool ply = false;             ///< surface.NNNN.ply, with velocity, temperature and viscosity per vertex
-  bool fog_volume = false;      ///< grid `density` in the VDB
-  bool vertex_colours = false;  ///< in the OBJ, from temperature: blue at colour_cold, through white, to red at colour_hot
+  bool ply = false;         ///< surface.NNNN.ply, with velocity, temperature and viscosity per vertex
+  bool fog_volume = false;  ///< grid `density` in the VDB
+  bool vertex_colours =
+      false;  ///< in the OBJ, from temperature: blue at colour_cold, through white, to red at colour_hot
   double colour_cold = 300.0, colour_hot = 400.0;  ///< [K]
 };
 

@@ -15,7 +15,9 @@ namespace smelt {
 
 namespace {
 
-int line_of(const toml::source_region& source) { return static_cast<int>(source.begin.line); }
+int line_of(const toml::source_region& source) {
+  return static_cast<int>(source.begin.line);
+}
 
 std::string describe(const Limits& limits, bool whole) {
   const bool low = std::isfinite(limits.lower), high = std::isfinite(limits.upper);
@@ -27,18 +29,26 @@ std::string describe(const Limits& limits, bool whole) {
 }
 
 bool allowed(double value, const Limits& limits) {
-  return std::isfinite(value) && (limits.open_lower ? value > limits.lower : value >= limits.lower) && value <= limits.upper;
+  return std::isfinite(value) && (limits.open_lower ? value > limits.lower : value >= limits.lower) &&
+         value <= limits.upper;
 }
 
 std::string type_name(const toml::node& node) {
   switch (node.type()) {
-    case toml::node_type::string: return "a text";
-    case toml::node_type::integer: return "a whole number";
-    case toml::node_type::floating_point: return "a number";
-    case toml::node_type::boolean: return "true or false";
-    case toml::node_type::array: return "an array";
-    case toml::node_type::table: return "a table";
-    default: return "a date or time";
+    case toml::node_type::string:
+      return "a text";
+    case toml::node_type::integer:
+      return "a whole number";
+    case toml::node_type::floating_point:
+      return "a number";
+    case toml::node_type::boolean:
+      return "true or false";
+    case toml::node_type::array:
+      return "an array";
+    case toml::node_type::table:
+      return "a table";
+    default:
+      return "a date or time";
   }
 }
 
@@ -80,7 +90,8 @@ class SceneReader final : public SchemaVisitor {
   void choice(const Key& key, std::string& value, const std::vector<std::string_view>& choices) override {
     if (const auto* node = find(key)) read_choice(*node, path_of(key), value, choices);
   }
-  void choice(const Key& key, std::optional<std::string>& value, const std::vector<std::string_view>& choices) override {
+  void choice(const Key& key, std::optional<std::string>& value,
+              const std::vector<std::string_view>& choices) override {
     if (const auto* node = find(key)) read_choice(*node, path_of(key), value.emplace(), choices);
   }
   void vector(const Key& key, Vec3& value, const Limits& limits) override {
@@ -90,8 +101,8 @@ class SceneReader final : public SchemaVisitor {
     if (const auto* node = find(key)) read_vector(*node, path_of(key), value.emplace(), limits);
   }
 
-  void range(const Key& key, std::string_view first, std::string_view second, std::optional<std::pair<double, double>>& value,
-             const Limits& limits) override {
+  void range(const Key& key, std::string_view first, std::string_view second,
+             std::optional<std::pair<double, double>>& value, const Limits& limits) override {
     const auto* node = find(key);
     if (!node) return;
     value.emplace();
@@ -100,7 +111,8 @@ class SceneReader final : public SchemaVisitor {
       required_number({first, ""}, value->first, limits);
       required_number({second, ""}, value->second, limits);
       close_scope();
-    } else if (read_number(*node, path_of(key), value->first, limits, fmt::format(" or {{ {} = , {} = }}", first, second))) {
+    } else if (read_number(*node, path_of(key), value->first, limits,
+                           fmt::format(" or {{ {} = , {} = }}", first, second))) {
       value->second = value->first;
     }
   }
@@ -111,7 +123,8 @@ class SceneReader final : public SchemaVisitor {
     value.emplace();
     const auto* laws = node->as_table();
     if (!laws) {
-      if (read_number(*node, path_of(key), value->cold, limits, " or a table such as { cold = , hot = }")) value->hot = value->cold;
+      if (read_number(*node, path_of(key), value->cold, limits, " or a table such as { cold = , hot = }"))
+        value->hot = value->cold;
       return;
     }
     scopes_.push_back({laws, path_of(key), {}});
@@ -166,7 +179,8 @@ class SceneReader final : public SchemaVisitor {
     const Scope& scope = scopes_.back();
     for (const auto& [key, node] : *scope.table) {
       if (scope.known.contains(key.str())) continue;
-      const std::string path = scope.path.empty() ? std::string(key.str()) : fmt::format("{}.{}", scope.path, key.str());
+      const std::string path =
+          scope.path.empty() ? std::string(key.str()) : fmt::format("{}.{}", scope.path, key.str());
       errors_.places().locate(path, line_of(node.source()));
       errors_.add(path, fmt::format("unknown key; {}", suggest(key.str(), scope.known)));
     }
@@ -201,7 +215,9 @@ class SceneReader final : public SchemaVisitor {
 
   const toml::node* require(const Key& key) {
     const toml::node* node = find(key);
-    if (!node) errors_.add(path_of(key), fmt::format("missing: {}", key.meaning.empty() ? "a value is needed here" : key.meaning));
+    if (!node)
+      errors_.add(path_of(key),
+                  fmt::format("missing: {}", key.meaning.empty() ? "a value is needed here" : key.meaning));
     return node;
   }
 
@@ -234,7 +250,8 @@ class SceneReader final : public SchemaVisitor {
     const auto i = node.value_exact<std::int64_t>();
     if (!i) return wrong_type(node, path, describe(limits, true));
     value = *i;
-    if (!allowed(static_cast<double>(*i), limits)) errors_.add(path, fmt::format("must be {}, is {}", describe(limits, true), *i));
+    if (!allowed(static_cast<double>(*i), limits))
+      errors_.add(path, fmt::format("must be {}, is {}", describe(limits, true), *i));
   }
 
   void read_boolean(const toml::node& node, const std::string& path, bool& value) {
@@ -244,7 +261,8 @@ class SceneReader final : public SchemaVisitor {
       wrong_type(node, path, "true or false");
   }
 
-  void read_choice(const toml::node& node, const std::string& path, std::string& value, const std::vector<std::string_view>& choices) {
+  void read_choice(const toml::node& node, const std::string& path, std::string& value,
+                   const std::vector<std::string_view>& choices) {
     if (!read_text(node, path, value)) return;
     if (std::find(choices.begin(), choices.end(), value) == choices.end())
       errors_.add(path, fmt::format("\"{}\" is none of {}", value, fmt::join(choices, ", ")));
@@ -271,7 +289,7 @@ class SceneReader final : public SchemaVisitor {
   std::vector<Scope> scopes_;
 };
 
-// --------------------------------------------------------------------------------------------------------------- overrides
+// ----------------------------------------------------------------------------------------------------------- overrides
 
 std::vector<std::string> split_path(std::string_view path) {
   std::vector<std::string> parts;
@@ -297,7 +315,8 @@ toml::table& table_at(toml::table& root, const std::vector<std::string>& parts, 
       char* end = nullptr;
       const unsigned long i = std::strtoul(index.c_str(), &end, 10);
       if (end == index.c_str() || *end || i >= array->size())
-        fail("--set {}: \"{}\" must be a number below {}: which of the [[{}]]", text, index, array->size(), parts[k - 1]);
+        fail("--set {}: \"{}\" must be a number below {}: which of the [[{}]]", text, index, array->size(),
+             parts[k - 1]);
       node = array->get(i);
     }
     table = node->as_table();

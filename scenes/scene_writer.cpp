@@ -42,8 +42,10 @@ std::string list_text(const std::vector<double>& values) {
 
 std::string thermal_text(const ThermalRange& s) {
   switch (s.law) {
-    case ThermalLaw::range: return range_text("cold", "hot", {s.cold, s.hot});
-    case ThermalLaw::table: return fmt::format("{{ temperature_K = {}, values = {} }}", list_text(s.temperature), list_text(s.value));
+    case ThermalLaw::range:
+      return range_text("cold", "hot", {s.cold, s.hot});
+    case ThermalLaw::table:
+      return fmt::format("{{ temperature_K = {}, values = {} }}", list_text(s.temperature), list_text(s.value));
     case ThermalLaw::exponential:
       return fmt::format("{{ reference = {}, reference_K = {}, rate_1_K = {} }}", number_text(s.reference),
                          number_text(s.reference_temperature), number_text(s.rate));
@@ -65,7 +67,9 @@ class TomlWriter final : public SchemaVisitor {
   void integer(const Key& key, std::optional<std::int64_t>& value, const Limits&) override {
     if (value) line(key, fmt::to_string(*value));
   }
-  void required_integer(const Key& key, std::int64_t& value, const Limits&) override { line(key, fmt::to_string(value)); }
+  void required_integer(const Key& key, std::int64_t& value, const Limits&) override {
+    line(key, fmt::to_string(value));
+  }
   void boolean(const Key& key, bool& value) override { line(key, value ? "true" : "false"); }
   void boolean(const Key& key, std::optional<bool>& value) override {
     if (value) line(key, *value ? "true" : "false");
@@ -74,7 +78,9 @@ class TomlWriter final : public SchemaVisitor {
     if (!value.empty()) line(key, toml_string(value));
   }
   void required_text(const Key& key, std::string& value) override { line(key, toml_string(value)); }
-  void choice(const Key& key, std::string& value, const std::vector<std::string_view>&) override { line(key, toml_string(value)); }
+  void choice(const Key& key, std::string& value, const std::vector<std::string_view>&) override {
+    line(key, toml_string(value));
+  }
   void choice(const Key& key, std::optional<std::string>& value, const std::vector<std::string_view>&) override {
     if (value) line(key, toml_string(*value));
   }
@@ -82,8 +88,8 @@ class TomlWriter final : public SchemaVisitor {
   void vector(const Key& key, std::optional<Vec3>& value, const Limits&) override {
     if (value) line(key, vector_text(*value));
   }
-  void range(const Key& key, std::string_view first, std::string_view second, std::optional<std::pair<double, double>>& value,
-             const Limits&) override {
+  void range(const Key& key, std::string_view first, std::string_view second,
+             std::optional<std::pair<double, double>>& value, const Limits&) override {
     if (value) line(key, range_text(first, second, *value));
   }
   void thermal(const Key& key, std::optional<ThermalRange>& value, const Limits&) override {
@@ -131,9 +137,15 @@ class ReferenceWriter final : public SchemaVisitor {
  public:
   std::string text;
 
-  void number(const Key& key, double& value, const Limits& limits) override { row(key, limits_text(limits), short_number(value)); }
-  void number(const Key& key, std::optional<double>&, const Limits& limits) override { row(key, limits_text(limits), ""); }
-  void required_number(const Key& key, double&, const Limits& limits) override { row(key, limits_text(limits), "**required**"); }
+  void number(const Key& key, double& value, const Limits& limits) override {
+    row(key, limits_text(limits), short_number(value));
+  }
+  void number(const Key& key, std::optional<double>&, const Limits& limits) override {
+    row(key, limits_text(limits), "");
+  }
+  void required_number(const Key& key, double&, const Limits& limits) override {
+    row(key, limits_text(limits), "**required**");
+  }
   void integer(const Key& key, std::int64_t& value, const Limits& limits) override {
     row(key, "whole, " + limits_text(limits), fmt::to_string(value));
   }
@@ -187,7 +199,8 @@ class ReferenceWriter final : public SchemaVisitor {
   }
 
   void row(const Key& key, const std::string& values, const std::string& fallback) {
-    rows_ += fmt::format("| `{}` | {} | {} | {} |\n", key.name, key.meaning, values, fallback.empty() ? std::string(key.without) : fallback);
+    rows_ += fmt::format("| `{}` | {} | {} | {} |\n", key.name, key.meaning, values,
+                         fallback.empty() ? std::string(key.without) : fallback);
   }
 
   void section(const Key& key, std::string_view before, std::string_view after, std::string_view note,
@@ -247,9 +260,9 @@ std::string write_scene_reference() {
   Scene defaults;
   visit_scene(writer, defaults);
   return "# The scene file\n\n"
-         "TOML; SI units and kelvin, each key with its unit as a suffix; y is up. Unknown keys are refused. Any key can be set on the\n"
-         "command line: `--set particles.count=20000 --set body.0.scale=0.2`. This page is printed by `smelt scene-reference` and checked\n"
-         "against the code by a test.\n" +
+         "TOML; SI units and kelvin, each key with its unit as a suffix; y is up. Unknown keys are refused. Any key "
+         "can be set on the\ncommand line: `--set particles.count=20000 --set body.0.scale=0.2`. This page is printed "
+         "by `smelt scene-reference` and checked\nagainst the code by a test.\n" +
          writer.text;
 }
 

@@ -7,8 +7,8 @@
 
 namespace smelt {
 
-/// The scene as TOML, every key written that has a value; read_scene gives the same scene back. Meshes outside smelt's own folder are
-/// written with absolute paths, so that the text may be stored elsewhere.
+/// The scene as TOML, every key written that has a value; read_scene gives the same scene back. Meshes outside smelt's
+/// own folder are written with absolute paths, so that the text may be stored elsewhere.
 std::string write_scene(const Scene& scene);
 
 /// The keys that a stage depends on, as text: equal texts make equal results.

@@ -26,14 +26,16 @@ inline constexpr Limits positive{0.0, std::numeric_limits<double>::infinity(), t
 inline constexpr Limits non_negative{0.0, std::numeric_limits<double>::infinity(), false};
 inline constexpr Limits unit_interval{0.0, 1.0, false};
 
-/// A key: its name (with the unit as a suffix), what it means, and, where no default value says it, what happens without it.
+/// A key: its name (with the unit as a suffix), what it means, and, where no default value says it, what happens
+/// without it.
 struct Key {
   std::string_view name;
   std::string_view meaning;
   std::string_view without = {};
 };
 
-/// Visits the keys of a scene in order. A value holds its default when it is visited; an optional without a value has none.
+/// Visits the keys of a scene in order. A value holds its default when it is visited; an optional without a value has
+/// none.
 class SchemaVisitor {
  public:
   virtual ~SchemaVisitor() = default;
@@ -50,19 +52,21 @@ class SchemaVisitor {
   /// A text that may be left out; empty then.
   virtual void optional_text(const Key& key, std::string& value) = 0;
   virtual void choice(const Key& key, std::string& value, const std::vector<std::string_view>& choices) = 0;
-  virtual void choice(const Key& key, std::optional<std::string>& value, const std::vector<std::string_view>& choices) = 0;
+  virtual void choice(const Key& key, std::optional<std::string>& value,
+                      const std::vector<std::string_view>& choices) = 0;
   virtual void vector(const Key& key, Vec3& value, const Limits& limits) = 0;
   virtual void vector(const Key& key, std::optional<Vec3>& value, const Limits& limits) = 0;
   /// A number, or { first = , second = } for the two ends of a range.
-  virtual void range(const Key& key, std::string_view first, std::string_view second, std::optional<std::pair<double, double>>& value,
-                     const Limits& limits) = 0;
+  virtual void range(const Key& key, std::string_view first, std::string_view second,
+                     std::optional<std::pair<double, double>>& value, const Limits& limits) = 0;
   /// A number that may follow temperature: a number, { cold = , hot = }, { temperature_K = [], values = [] } or
   /// { reference = , reference_K = , rate_1_K = }. `limits` are those of the value.
   virtual void thermal(const Key& key, std::optional<ThermalRange>& value, const Limits& limits) = 0;
   /// A table; where `presence` is given the table may be left out, and *presence says whether it is there.
   virtual void table(const Key& key, bool* presence, const std::function<void()>& visit_keys) = 0;
   /// [[name]]: `resize` makes n entries, `visit_entry(k)` visits one of `size()`.
-  virtual void tables(const Key& key, const std::function<std::size_t()>& size, const std::function<void(std::size_t)>& resize,
+  virtual void tables(const Key& key, const std::function<std::size_t()>& size,
+                      const std::function<void(std::size_t)>& resize,
                       const std::function<void(std::size_t)>& visit_entry) = 0;
 };
 

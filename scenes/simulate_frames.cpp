@@ -39,28 +39,32 @@ std::optional<Checkpoint> read_if_sound(const std::filesystem::path& file, Progr
   }
 }
 
-/// The newest sound checkpoint; nothing where the folder has none. Throws Error where those it has are of no use: starting over would
-/// write over frames that somebody wanted to keep.
+/// The newest sound checkpoint; nothing where the folder has none. Throws Error where those it has are of no use:
+/// starting over would write over frames that somebody wanted to keep.
 std::optional<Checkpoint> find_checkpoint(const OutputFolder& folder, std::uint64_t scene_hash, Progress& progress) {
   const auto files = list_checkpoints(folder);
   for (const auto& file : files) {
     std::optional<Checkpoint> checkpoint = read_if_sound(file, progress);
     if (!checkpoint) continue;
     if (checkpoint->scene_hash != scene_hash)
-      fail("{}: this folder was simulated from another scene, or by another version of smelt; resume with {}, or use another folder (-o)",
-           file.string(), folder.scene().string());
+      fail(
+          "{}: this folder was simulated from another scene, or by another version of smelt; resume with {}, or use "
+          "another folder (-o)",
+          file.string(), folder.scene().string());
     return checkpoint;
   }
   if (!files.empty())
-    fail("{}: none of the checkpoints can be read, so there is nothing to resume from; without --resume the result is moved aside and the "
-         "shot starts over",
-         folder.checkpoints().string());
+    fail(
+        "{}: none of the checkpoints can be read, so there is nothing to resume from; without --resume the result is "
+        "moved aside and the shot starts over",
+        folder.checkpoints().string());
   return std::nullopt;
 }
 
 /// Advances from one frame to the next.
 template <typename Real>
-StepStatistics advance_frame(Solver<3, Real>& solver, double start_time, double interval, ProgressState state, Progress& progress) {
+StepStatistics advance_frame(Solver<3, Real>& solver, double start_time, double interval, ProgressState state,
+                             Progress& progress) {
   StepStatistics statistics;
   solver.prepare(start_time);
   for (double remaining = interval; remaining > 0.0;) {
@@ -68,7 +72,8 @@ StepStatistics advance_frame(Solver<3, Real>& solver, double start_time, double 
     remaining -= step.dt;
     statistics.add(step);
     state.fraction = 1.0 - remaining / interval;
-    state.details = fmt::format("step {} dt {:.2e} s ({})", statistics.n_steps, step.dt, time_step_term_names[static_cast<std::size_t>(step.term)]);
+    state.details = fmt::format("step {} dt {:.2e} s ({})", statistics.n_steps, step.dt,
+                                time_step_term_names[static_cast<std::size_t>(step.term)]);
     progress.update(state);
     stop_if_asked(progress, "simulate", state.frame);
   }
@@ -86,8 +91,8 @@ std::vector<BodyPose> to_body_poses(const Colliders<3>& colliders) {
 
 /// Cache first, then the checkpoint: a checkpoint says that its frame is safe.
 template <typename Real>
-void store_frame(const Solver<3, Real>& solver, const SimulationSetup& setup, const OutputFolder& folder, std::uint64_t scene_hash,
-                 int frame, double time, std::optional<RestPositions>& rest) {
+void store_frame(const Solver<3, Real>& solver, const SimulationSetup& setup, const OutputFolder& folder,
+                 std::uint64_t scene_hash, int frame, double time, std::optional<RestPositions>& rest) {
   ParticleFrame cache = to_frame(solver, setup.spacing, frame, time);
   if (rest) rest->set_rest(cache);
   write_particles(folder.particles(frame), cache);
@@ -106,7 +111,8 @@ std::optional<HeatLedger> ledger_of(const Solver<3, Real>& solver) {
 
 template <typename Real>
 void run_simulation(const Scene& scene, const OutputFolder& folder, const StageOptions& options, SimulationSetup& setup,
-                    const std::optional<Checkpoint>& checkpoint, std::uint64_t scene_hash, RunReport& report, Progress& progress) {
+                    const std::optional<Checkpoint>& checkpoint, std::uint64_t scene_hash, RunReport& report,
+                    Progress& progress) {
   Colliders<3> colliders = build_colliders(setup);
   if (checkpoint) colliders.set_body_states(checkpoint->bodies);
   if (colliders.has_bodies()) create_directories_or_fail(folder.bodies());
@@ -124,8 +130,8 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
     const CostMeter meter;
     store_frame(solver, setup, folder, scene_hash, 1, 0.0, rest);
     const Diagnostics<3> diagnostics = compute_diagnostics(solver);
-    report.set_simulated(1, 0.0, {}, diagnostics, compute_mass_account(solver, diagnostics.mass), ledger_of(solver), to_body_poses(solver.colliders()),
-                         meter.finish({folder.particles(1)}));
+    report.set_simulated(1, 0.0, {}, diagnostics, compute_mass_account(solver, diagnostics.mass), ledger_of(solver),
+                         to_body_poses(solver.colliders()), meter.finish({folder.particles(1)}));
   }
 
   while (frame < options.frames.last) {
@@ -137,20 +143,22 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
     try {
       statistics = advance_frame(solver, start_time, 1.0 / scene.shot.fps, state, progress);
     } catch (const DivergedError& error) {
-      throw DivergedError(fmt::format("{}; frames 1 to {} are kept in {}", error.what(), frame - 1, folder.particles().string()));
+      throw DivergedError(
+          fmt::format("{}; frames 1 to {} are kept in {}", error.what(), frame - 1, folder.particles().string()));
     }
     const double time = (frame - 1) / scene.shot.fps;
     store_frame(solver, setup, folder, scene_hash, frame, time, rest);
     const Diagnostics<3> diagnostics = compute_diagnostics(solver);
-    report.set_simulated(frame, time, statistics, diagnostics, compute_mass_account(solver, diagnostics.mass), ledger_of(solver),
-                         to_body_poses(solver.colliders()),
+    report.set_simulated(frame, time, statistics, diagnostics, compute_mass_account(solver, diagnostics.mass),
+                         ledger_of(solver), to_body_poses(solver.colliders()),
                          meter.finish({folder.particles(frame), folder.checkpoint(frame)}));
   }
 }
 
 }  // namespace
 
-void simulate_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report, Progress& progress) {
+void simulate_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report,
+                     Progress& progress) {
   SimulationSetup setup = build_simulation(scene);
   for (const std::string& warning : setup.warnings) progress.message("warning: " + warning);
   create_directories_or_fail(folder.particles());

@@ -33,8 +33,9 @@ inline bool all_exist(const std::vector<std::filesystem::path>& paths) {
 /// Throws Interrupted where the user wants to stop.
 inline void stop_if_asked(Progress& progress, const char* stage, int frame) {
   if (!progress.should_stop()) return;
-  throw Interrupted(fmt::format("stopped while working on frame {} of stage \"{}\"; finished frames are kept, --resume goes on from them",
-                                frame, stage));
+  throw Interrupted(fmt::format(
+      "stopped while working on frame {} of stage \"{}\"; finished frames are kept, --resume goes on from them", frame,
+      stage));
 }
 
 }  // namespace smelt

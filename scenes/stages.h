@@ -1,6 +1,6 @@
 #pragma once
-// The three stages of a shot. Each reads what the earlier one left in the folder and writes frame by frame, so that any range of
-// frames can be made, in any order, and again.
+// The three stages of a shot. Each reads what the earlier one left in the folder and writes frame by frame, so that any
+// range of frames can be made, in any order, and again.
 
 #include "scenes/output_folder.h"
 #include "scenes/progress.h"
@@ -25,17 +25,20 @@ struct StageOptions {
   bool resume = false;  ///< keep what is there and was made from the same settings
 };
 
-/// Simulates up to options.frames.last and writes particles and a checkpoint for every frame. With `resume` it goes on from the last
-/// sound checkpoint, and ends in the same bytes as a run that was never cut off. Throws Error where that checkpoint is of another
-/// scene, DivergedError (frames finished are kept), Interrupted.
-void simulate_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report, Progress& progress);
+/// Simulates up to options.frames.last and writes particles and a checkpoint for every frame. With `resume` it goes on
+/// from the last sound checkpoint, and ends in the same bytes as a run that was never cut off. Throws Error where that
+/// checkpoint is of another scene, DivergedError (frames finished are kept), Interrupted.
+void simulate_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report,
+                     Progress& progress);
 
 /// Wraps the particles of each frame in a surface: OBJ and VDB. Throws Error for a frame whose particles are missing.
-void surface_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report, Progress& progress);
+void surface_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report,
+                    Progress& progress);
 
-/// Draws each frame as PNG, and as EXR where the scene asks for it. A frame that cannot be drawn is told and left out; the others are
-/// made, and at the end Error is thrown.
-void render_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report, Progress& progress);
+/// Draws each frame as PNG, and as EXR where the scene asks for it. A frame that cannot be drawn is told and left out;
+/// the others are made, and at the end Error is thrown.
+void render_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report,
+                   Progress& progress);
 
 /// Pictures asked for on the command line instead of the scene's.
 struct PictureRequest {
@@ -47,7 +50,8 @@ struct PictureRequest {
 };
 
 /// Draws the particles of each frame as coloured spheres, like render_frames().
-void diagnose_frames(const Scene& scene, const OutputFolder& folder, const FrameRange& frames, const PictureRequest& request, Progress& progress);
+void diagnose_frames(const Scene& scene, const OutputFolder& folder, const FrameRange& frames,
+                     const PictureRequest& request, Progress& progress);
 
 /// Frames for a sheet of columns x rows places: evenly spread over the range, first and last included.
 std::vector<int> choose_sheet_frames(const FrameRange& frames, int n);

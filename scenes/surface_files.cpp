@@ -6,20 +6,19 @@
 #include "io/surface_vdb.h"
 #include "surfacing/surface.h"
 
-#include <sys/resource.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <limits>
 #include <string>
+#include <sys/resource.h>
 
 namespace smelt {
 
 namespace {
 
-/// What this process may still take [bytes]: the machine's free memory as Linux estimates it, or `ulimit -v` where that is less; without either, no
-/// limit.
+/// What this process may still take [bytes]: the machine's free memory as Linux estimates it, or `ulimit -v` where that
+/// is less; without either, no limit.
 double available_memory() {
   double bytes = std::numeric_limits<double>::infinity();
   rlimit limit{};
@@ -35,7 +34,8 @@ std::vector<Vec3f> temperature_colours(const std::vector<float>& temperature, co
   std::vector<Vec3f> colours;
   const double range = outputs.colour_hot - outputs.colour_cold;
   for (const float kelvin : temperature) {
-    const auto t = static_cast<float>(std::clamp((static_cast<double>(kelvin) - outputs.colour_cold) / range, 0.0, 1.0));
+    const auto t =
+        static_cast<float>(std::clamp((static_cast<double>(kelvin) - outputs.colour_cold) / range, 0.0, 1.0));
     colours.emplace_back(std::min(1.0f, 2.0f * t), 1.0f - std::abs(2.0f * t - 1.0f), std::min(1.0f, 2.0f - 2.0f * t));
   }
   return colours;
@@ -50,8 +50,8 @@ std::vector<std::filesystem::path> surface_files(const OutputFolder& folder, int
   return files;
 }
 
-SurfaceMesh make_surface_files(const std::filesystem::path& source, const ParticleFrame& particles, const Scene& settings,
-                               const OutputFolder& folder, int frame) {
+SurfaceMesh make_surface_files(const std::filesystem::path& source, const ParticleFrame& particles,
+                               const Scene& settings, const OutputFolder& folder, int frame) {
   const SurfaceOutputs& outputs = settings.surface_outputs;
   SurfacingOptions options = settings.surface;
   options.memory_limit_bytes = available_memory();
@@ -60,12 +60,14 @@ SurfaceMesh make_surface_files(const std::filesystem::path& source, const Partic
     if (outputs.vertex_colours && particles.size() > 0 && particles.temperature.empty())
       fail("the particles have no temperature to make surface.vertex_colours from");
     if (outputs.vertex_colours && !(outputs.colour_hot > outputs.colour_cold))
-      fail("surface.colour_hot_K = {} must be above surface.colour_cold_K = {}", outputs.colour_hot, outputs.colour_cold);
+      fail("surface.colour_hot_K = {} must be above surface.colour_cold_K = {}", outputs.colour_hot,
+           outputs.colour_cold);
     if (particles.size() > 0) surface = build_surface(particles, options);
   } catch (const Error& error) {
     fail("{}: {}", source.string(), error.what());
   }
-  write_surface_vdb(folder.surface_vdb(frame), surface, options.cell_over_spacing * particles.spacing, frame, particles.time, outputs.fog_volume);
+  write_surface_vdb(folder.surface_vdb(frame), surface, options.cell_over_spacing * particles.spacing, frame,
+                    particles.time, outputs.fog_volume);
   if (outputs.ply) write_ply(folder.surface_ply(frame), surface);
   const std::vector<Vec3f> colours =
       outputs.vertex_colours ? temperature_colours(surface.temperature, outputs) : std::vector<Vec3f>();

@@ -14,9 +14,10 @@ namespace smelt {
 /// The files of a frame's surface; the OBJ last: where it is, the frame is whole.
 std::vector<std::filesystem::path> surface_files(const OutputFolder& folder, int frame, const SurfaceOutputs& outputs);
 
-/// Builds the surface of `particles`, read from `source`, and writes its files. No particles make an empty surface. Errors name `source`
-/// and, where one is at fault, the particle; a grid that does not fit into what memory is free is refused before it is made.
-SurfaceMesh make_surface_files(const std::filesystem::path& source, const ParticleFrame& particles, const Scene& settings,
-                               const OutputFolder& folder, int frame);
+/// Builds the surface of `particles`, read from `source`, and writes its files. No particles make an empty surface.
+/// Errors name `source` and, where one is at fault, the particle; a grid that does not fit into what memory is free is
+/// refused before it is made.
+SurfaceMesh make_surface_files(const std::filesystem::path& source, const ParticleFrame& particles,
+                               const Scene& settings, const OutputFolder& folder, int frame);
 
 }  // namespace smelt

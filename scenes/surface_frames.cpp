@@ -6,7 +6,8 @@
 
 namespace smelt {
 
-void surface_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report, Progress& progress) {
+void surface_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report,
+                    Progress& progress) {
   create_directories_or_fail(folder.surfaces());
   for (int frame = options.frames.first; frame <= options.frames.last; ++frame) {
     const auto files = surface_files(folder, frame, scene.surface_outputs);
@@ -17,7 +18,8 @@ void surface_frames(const Scene& scene, const OutputFolder& folder, const StageO
     const CostMeter meter;
     const ParticleFrame particles = read_particles(folder.particles(frame));  // none before a vent opens
     const SurfaceMesh surface = make_surface_files(folder.particles(frame), particles, scene, folder, frame);
-    report.set_surfaced(frame, compute_volume(surface.mesh), surface.mesh.vertices.size(), surface.mesh.triangles.size(), meter.finish(files));
+    report.set_surfaced(frame, compute_volume(surface.mesh), surface.mesh.vertices.size(),
+                        surface.mesh.triangles.size(), meter.finish(files));
   }
 }
 

@@ -60,8 +60,11 @@ std::vector<int> frames_there(const Pattern& pattern) {
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     const std::string name = entry.path().filename().string();
-    if (!name.starts_with(pattern.head) || !name.ends_with(pattern.tail) || name.size() < pattern.head.size() + pattern.tail.size()) continue;
-    const std::string digits = name.substr(pattern.head.size(), name.size() - pattern.head.size() - pattern.tail.size());
+    if (!name.starts_with(pattern.head) || !name.ends_with(pattern.tail) ||
+        name.size() < pattern.head.size() + pattern.tail.size())
+      continue;
+    const std::string digits =
+        name.substr(pattern.head.size(), name.size() - pattern.head.size() - pattern.tail.size());
     if (digits.empty() || digits.size() > 9 || !std::all_of(digits.begin(), digits.end(), is_digit)) continue;
     if (const int frame = std::stoi(digits); pattern.path(frame).filename() == name) frames.push_back(frame);
   }
@@ -70,30 +73,35 @@ std::vector<int> frames_there(const Pattern& pattern) {
   return frames;
 }
 
-std::vector<ParticleFile> find_pattern_files(const std::string& name, const Pattern& pattern, const std::string& range) {
+std::vector<ParticleFile> find_pattern_files(const std::string& name, const Pattern& pattern,
+                                             const std::string& range) {
   const std::vector<int> there = frames_there(pattern);
   if (there.empty()) fail("{}: there is no such file; # stands for the digits of the frame number", name);
   FrameRange frames{there.front(), there.back()};
-  if (!range.empty()) frames = parse_frame_range(range, range.ends_with('-') ? there.back() : std::numeric_limits<int>::max());
+  if (!range.empty())
+    frames = parse_frame_range(range, range.ends_with('-') ? there.back() : std::numeric_limits<int>::max());
   std::vector<ParticleFile> files;
   for (int frame = frames.first; frame <= frames.last; ++frame) {
     files.push_back({pattern.path(frame), frame});
     if (!std::binary_search(there.begin(), there.end(), frame))
-      fail("{}: frame {} is missing; there are {} files from frame {} to {}", files.back().path.string(), frame, there.size(), there.front(), there.back());
+      fail("{}: frame {} is missing; there are {} files from frame {} to {}", files.back().path.string(), frame,
+           there.size(), there.front(), there.back());
   }
   return files;
 }
 
-// ---------------------------------------------------------------------------------------------------------------- particles
+// ----------------------------------------------------------------------------------------------------------- particles
 
 void keep_attributes(ParticleFrame& frame, bool has_velocity, const std::vector<std::string>& wanted) {
-  const std::map<std::string, bool> there = {{"v", has_velocity}, {"temperature", !frame.temperature.empty()}, {"viscosity", !frame.viscosity.empty()}};
+  const std::map<std::string, bool> there = {
+      {"v", has_velocity}, {"temperature", !frame.temperature.empty()}, {"viscosity", !frame.viscosity.empty()}};
   std::vector<std::string> names;
   for (const auto& [name, is_there] : there)
     if (is_there) names.push_back(name);
   for (const std::string& name : wanted)
     if (std::find(names.begin(), names.end(), name) == names.end())
-      fail("there is no attribute `{}` to carry over; the particles have: {}", name, names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")));
+      fail("there is no attribute `{}` to carry over; the particles have: {}", name,
+           names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", ")));
   const auto drop = [&](const char* name) { return std::find(wanted.begin(), wanted.end(), name) == wanted.end(); };
   if (drop("v")) std::fill(frame.velocity.begin(), frame.velocity.end(), Vec3f::Zero());
   if (drop("temperature")) frame.temperature.clear();
@@ -176,9 +184,11 @@ std::vector<ParticleFile> find_particle_files(const std::vector<std::string>& na
   std::sort(files.begin(), files.end(), [](const ParticleFile& a, const ParticleFile& b) { return a.frame < b.frame; });
   for (std::size_t i = 1; i < files.size(); ++i)
     if (files[i].frame == files[i - 1].frame)
-      fail("{} and {} are both frame {}: the last digits of a name are its frame", files[i - 1].path.string(), files[i].path.string(), files[i].frame);
+      fail("{} and {} are both frame {}: the last digits of a name are its frame", files[i - 1].path.string(),
+           files[i].path.string(), files[i].frame);
   if (frames.empty()) return files;
-  const FrameRange range = parse_frame_range(frames, frames.ends_with('-') ? files.back().frame : std::numeric_limits<int>::max());
+  const FrameRange range =
+      parse_frame_range(frames, frames.ends_with('-') ? files.back().frame : std::numeric_limits<int>::max());
   for (int frame = range.first; frame <= range.last; ++frame)
     if (std::none_of(files.begin(), files.end(), [&](const ParticleFile& f) { return f.frame == frame; }))
       fail("--frames {}: frame {} is missing among the files given", frames, frame);
@@ -186,12 +196,14 @@ std::vector<ParticleFile> find_particle_files(const std::vector<std::string>& na
   return files;
 }
 
-SeriesSummary surface_series(const std::vector<std::string>& names, const std::string& frames, const SeriesOptions& options, Progress& progress) {
+SeriesSummary surface_series(const std::vector<std::string>& names, const std::string& frames,
+                             const SeriesOptions& options, Progress& progress) {
   const std::vector<ParticleFile> files = find_particle_files(names, frames);
   const Scene settings = read_surface_settings(options.overrides);
   for (const ParticleFile& file : files)
     if (!is_particle_cloud(file.path) && file.path.extension() != ".vdb")
-      fail("{}: particles cannot be read from '{}' files; allowed are .vdb .ply .xyz .csv", file.path.string(), file.path.extension().string());
+      fail("{}: particles cannot be read from '{}' files; allowed are .vdb .ply .xyz .csv", file.path.string(),
+           file.path.extension().string());
 
   SeriesSummary summary{fs::absolute(options.folder)};
   summary.spacing_is_estimated = !options.spacing && is_particle_cloud(files.front().path);
@@ -199,15 +211,17 @@ SeriesSummary surface_series(const std::vector<std::string>& names, const std::s
   if (summary.spacing_is_estimated) {
     const fs::path first = first_of_series(names, files);
     summary.spacing = estimate_spacing_of(first);
-    progress.message(fmt::format("particles are {:.6g} m apart, as estimated from {}; --spacing_m sets it", summary.spacing, first.string()));
+    progress.message(fmt::format("particles are {:.6g} m apart, as estimated from {}; --spacing_m sets it",
+                                 summary.spacing, first.string()));
   }
 
   const OutputFolder folder{summary.folder};
   create_directories_or_fail(folder.surfaces());
   const fs::path settings_path = folder.surfaces() / "settings.toml";
-  const std::string text = fmt::format("# spacing_m = {:.17g}, attributes = {}\n{}", summary.spacing,
-                                       options.attributes ? fmt::format("{}", fmt::join(*options.attributes, ",")) : "all",
-                                       write_section(settings, SceneSection::surface));
+  const std::string text =
+      fmt::format("# spacing_m = {:.17g}, attributes = {}\n{}", summary.spacing,
+                  options.attributes ? fmt::format("{}", fmt::join(*options.attributes, ",")) : "all",
+                  write_section(settings, SceneSection::surface));
   const bool keep = options.resume && made_from_same(settings_path, text);
   write_file_atomically(settings_path, text);
   for (const ParticleFile& file : files) {

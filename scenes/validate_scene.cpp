@@ -41,7 +41,8 @@ void validate_viscosity(const ViscositySettings& s, const std::string& path, Sce
     require(s.consistency.has_value(), "consistency_Pa_sn");
     require(s.index.has_value(), "index");
     if (s.jump_number && s.rest_viscosity)
-      errors.add(path + ".rest_viscosity_Pa_s", "give jump_number or rest_viscosity_Pa_s, not both: one follows from the other");
+      errors.add(path + ".rest_viscosity_Pa_s",
+                 "give jump_number or rest_viscosity_Pa_s, not both: one follows from the other");
     const bool yields = s.yield_stress && !is_zero(*s.yield_stress);
     if (yields && !s.jump_number && !s.rest_viscosity)
       errors.add(path + ".jump_number", "missing: a yield stress needs jump_number or rest_viscosity_Pa_s");
@@ -60,27 +61,32 @@ void validate_viscosity(const ViscositySettings& s, const std::string& path, Sce
 
 void validate_heat(const HeatProperties& s, bool has_ambient, const std::string& path, SceneErrors& errors) {
   if (s.hot < s.cold || (s.hot == s.cold && !(s.latent_heat > 0.0)))
-    errors.add(path + ".hot_K", fmt::format("must be above cold_K = {}, is {}; only with latent_heat_J_kg may they be equal", s.cold, s.hot));
+    errors.add(
+        path + ".hot_K",
+        fmt::format("must be above cold_K = {}, is {}; only with latent_heat_J_kg may they be equal", s.cold, s.hot));
   if (s.latent_heat > 0.0 && !(s.specific_heat > 0.0))
     errors.add(path + ".latent_heat_J_kg", "needs specific_heat_J_kgK beside it");
-  if (s.emissivity > 0.0 && !(s.specific_heat > 0.0)) errors.add(path + ".emissivity", "needs specific_heat_J_kgK beside it");
+  if (s.emissivity > 0.0 && !(s.specific_heat > 0.0))
+    errors.add(path + ".emissivity", "needs specific_heat_J_kgK beside it");
   if (s.emissivity > 0.0 && !has_ambient)
     errors.add(path + ".emissivity", "needs an [ambient] with the temperature_K that is radiated to");
 }
 
 void validate_thermal_table(const ThermalRange& s, const std::string& path, SceneErrors& errors) {
   if (s.temperature.size() != s.value.size())
-    errors.add(path + ".values", fmt::format("must be as many as temperature_K, which has {}, are {}", s.temperature.size(), s.value.size()));
+    errors.add(path + ".values", fmt::format("must be as many as temperature_K, which has {}, are {}",
+                                             s.temperature.size(), s.value.size()));
   if (s.temperature.size() < 2)
-    errors.add(path + ".temperature_K", fmt::format("must hold at least two temperatures, holds {}", s.temperature.size()));
+    errors.add(path + ".temperature_K",
+               fmt::format("must hold at least two temperatures, holds {}", s.temperature.size()));
   for (std::size_t k = 1; k < s.temperature.size(); ++k)
     if (!(s.temperature[k] > s.temperature[k - 1]))
-      return errors.add(path + ".temperature_K", fmt::format("must rise from one to the next, but {} is followed by {}", s.temperature[k - 1],
-                                                             s.temperature[k]));
+      return errors.add(path + ".temperature_K", fmt::format("must rise from one to the next, but {} is followed by {}",
+                                                             s.temperature[k - 1], s.temperature[k]));
 }
 
-void validate_thermal(const std::optional<ThermalRange>& value, const std::optional<HeatProperties>& heat, const std::string& path,
-                      SceneErrors& errors) {
+void validate_thermal(const std::optional<ThermalRange>& value, const std::optional<HeatProperties>& heat,
+                      const std::string& path, SceneErrors& errors) {
   if (!value || (value->law == ThermalLaw::range && value->cold == value->hot)) return;
   if (!heat) return errors.add(path, "follows temperature, but the material has no heat");
   if (value->law == ThermalLaw::table) validate_thermal_table(*value, path, errors);
@@ -99,6 +105,25 @@ void validate_material(const MaterialSettings& m, bool has_ambient, const std::s
   validate_thermal(m.viscosity.rest_viscosity, m.heat, of + "rest_viscosity_Pa_s", errors);
 }
 
+/// Whether a property is 0 at some temperature.
+bool reaches_zero(const ThermalRange& s) {
+  if (s.law == ThermalLaw::range) return s.cold == 0.0 || s.hot == 0.0;
+  if (s.law == ThermalLaw::table) return std::find(s.value.begin(), s.value.end(), 0.0) != s.value.end();
+  return s.reference == 0.0;
+}
+
+/// A power-law fluid at rest has no finite viscosity; a stress that follows the strain rate at once would need it.
+void validate_power_law(const Scene& scene, SceneErrors& errors) {
+  if (scene.solver.shear_wave_speed.value_or(1.0) > 0.0) return;
+  for (const MaterialSettings& m : scene.materials)
+    if (const ViscositySettings& s = m.viscosity;
+        s.law == "smd" && s.yield_stress && reaches_zero(*s.yield_stress) && s.index.value_or(1.0) != 1.0)
+      errors.add("solver.shear_wave_speed_m_s",
+                 fmt::format("must be above 0, or left out: material \"{}\" is a power-law fluid where its "
+                             "yield_stress_Pa is 0, which has no finite viscosity at rest",
+                             m.name));
+}
+
 void validate_placement(const PlacementSettings& s, const std::string& path, SceneErrors& errors) {
   if (s.scale && s.height) errors.add(path + ".height_m", "give scale or height_m, not both");
 }
@@ -113,7 +138,8 @@ void validate_mesh_file(const Scene& scene, const std::string& mesh, const std::
 }
 
 /// What is poured or filled in must be of a material that is there, and have a temperature where that has heat.
-void validate_substance(const Scene& scene, const std::string& material_name, const std::string& path, bool has_temperature, SceneErrors& errors) {
+void validate_substance(const Scene& scene, const std::string& material_name, const std::string& path,
+                        bool has_temperature, SceneErrors& errors) {
   std::vector<std::string> names;
   for (const auto& m : scene.materials) names.push_back(m.name);
   const auto found = std::find(names.begin(), names.end(), material_name);
@@ -129,7 +155,8 @@ void validate_substance(const Scene& scene, const std::string& material_name, co
   if (material.heat && !has_temperature)
     errors.add(path + ".temperature_K", fmt::format("missing: material \"{}\" has heat", material.name));
   if (!material.heat && has_temperature)
-    errors.add(path + ".temperature_K", fmt::format("material \"{}\" has no heat; give it one, or leave this out", material.name));
+    errors.add(path + ".temperature_K",
+               fmt::format("material \"{}\" has no heat; give it one, or leave this out", material.name));
 }
 
 void validate_bodies(const Scene& scene, SceneErrors& errors) {
@@ -145,58 +172,76 @@ void validate_bodies(const Scene& scene, SceneErrors& errors) {
 void validate_keyframes(const ColliderSettings& s, const std::string& path, SceneErrors& errors) {
   if (s.keyframes.empty()) return;
   if (s.keyframes.size() == 1)
-    errors.add(path + ".keyframes", "one keyframe moves nothing: give two or more, or place the collider with translate_m and rotate_deg");
+    errors.add(path + ".keyframes",
+               "one keyframe moves nothing: give two or more, or place the collider with translate_m and rotate_deg");
   if (!s.velocity.isZero(0.0)) errors.add(path + ".velocity_m_s", "give keyframes or a velocity, not both");
-  if (!s.angular_velocity.isZero(0.0)) errors.add(path + ".angular_velocity_rad_s", "give keyframes or an angular velocity, not both");
+  if (!s.angular_velocity.isZero(0.0))
+    errors.add(path + ".angular_velocity_rad_s", "give keyframes or an angular velocity, not both");
   for (std::size_t k = 1; k < s.keyframes.size(); ++k) {
     const KeyframeSettings &before = s.keyframes[k - 1], &key = s.keyframes[k];
     const std::string here = fmt::format("{}.keyframes.{}", path, k);
     if (!(key.time > before.time))
-      errors.add(here + ".time_s", fmt::format("must be later than the keyframe before, at {} s, is {}; put the keyframes in order", before.time,
-                                               key.time));
+      errors.add(here + ".time_s",
+                 fmt::format("must be later than the keyframe before, at {} s, is {}; put the keyframes in order",
+                             before.time, key.time));
     const double turn = (key.rotate_deg - before.rotate_deg).cwiseAbs().maxCoeff();
     if (turn >= 180.0)
-      errors.add(here + ".rotate_deg", fmt::format("turns by {} degrees from the keyframe before, and half a turn or more may go either way: put "
-                                                   "keyframes in between, or use angular_velocity_rad_s",
-                                                   turn));
+      errors.add(
+          here + ".rotate_deg",
+          fmt::format("turns by {} degrees from the keyframe before, and half a turn or more may go either way: put "
+                      "keyframes in between, or use angular_velocity_rad_s",
+                      turn));
   }
 }
 
 void validate_emitter(const Scene& scene, const EmitterSettings& s, const std::string& path, SceneErrors& errors) {
   validate_substance(scene, s.material, path, s.temperature.has_value(), errors);
   if (!(s.direction.norm() > 0.0)) errors.add(path + ".direction", "must not be zero");
-  if (s.end && !(*s.end > s.start)) errors.add(path + ".end_s", fmt::format("must be after start_s = {}, is {}", s.start, *s.end));
+  if (s.end && !(*s.end > s.start))
+    errors.add(path + ".end_s", fmt::format("must be after start_s = {}, is {}", s.start, *s.end));
   if (scene.particles.spacing && s.radius > 0.0 && s.radius < *scene.particles.spacing)
-    errors.add(path + ".radius_m", fmt::format("must be at least the spacing of particles, {} m, is {}; widen the vent, or take a smaller spacing",
-                                               *scene.particles.spacing, s.radius));
+    errors.add(
+        path + ".radius_m",
+        fmt::format("must be at least the spacing of particles, {} m, is {}; widen the vent, or take a smaller spacing",
+                    *scene.particles.spacing, s.radius));
   if (scene.solver.density != "continuity")
-    errors.add(path, fmt::format("goes with [solver] density = \"continuity\" alone; \"{}\" would see the back of the vent as a free surface",
-                                 scene.solver.density));
+    errors.add(path,
+               fmt::format(
+                   "goes with [solver] density = \"continuity\" alone; \"{}\" would see the back of the vent as a free "
+                   "surface",
+                   scene.solver.density));
   if (scene.periodic) errors.add(path, "a [periodic] box has none: what comes in could not go out of it");
 }
 
 void validate_outflow(const OutflowSettings& s, const std::string& path, SceneErrors& errors) {
   if (!s.lower) errors.add(path + ".lower_m", "missing: lowest corner of the box");
   if (!s.upper) errors.add(path + ".upper_m", "missing: highest corner of the box");
-  if (s.lower && s.upper && !((*s.upper - *s.lower).array() > 0.0).all()) errors.add(path + ".upper_m", "must be above lower_m along every axis");
+  if (s.lower && s.upper && !((*s.upper - *s.lower).array() > 0.0).all())
+    errors.add(path + ".upper_m", "must be above lower_m along every axis");
 }
 
 void validate_terrain(const ColliderSettings& s, const std::string& path, SceneErrors& errors) {
   const std::string extension = std::filesystem::path(s.mesh).extension().string();
   if (!is_height_field(s.mesh)) {
-    if (s.terrain) errors.add(path + ".terrain", fmt::format("\"{}\" is no height field (.asc, .csv or .png); leave this out", s.mesh));
+    if (s.terrain)
+      errors.add(path + ".terrain",
+                 fmt::format("\"{}\" is no height field (.asc, .csv or .png); leave this out", s.mesh));
     return;
   }
   if (extension != ".asc" && !(s.terrain && s.terrain->cell))
-    errors.add(path + ".terrain.cell_m", fmt::format("missing: a {} file does not say how far apart its heights are", extension));
+    errors.add(path + ".terrain.cell_m",
+               fmt::format("missing: a {} file does not say how far apart its heights are", extension));
   if (extension == ".png" && s.terrain && !(s.terrain->highest > s.terrain->lowest))
-    errors.add(path + ".terrain.highest_m", fmt::format("must be above lowest_m = {}, is {}", s.terrain->lowest, s.terrain->highest));
+    errors.add(path + ".terrain.highest_m",
+               fmt::format("must be above lowest_m = {}, is {}", s.terrain->lowest, s.terrain->highest));
 }
 
 void validate_collider(const ColliderSettings& s, bool hot, const std::string& path, SceneErrors& errors) {
   if (s.mesh == "ground") {
     const auto refuse = [&](bool given, const char* key) {
-      if (given) errors.add(path + key, "the ground has no end and cannot move; its surface may (surface_velocity_m_s), or a mesh");
+      if (given)
+        errors.add(path + key,
+                   "the ground has no end and cannot move; its surface may (surface_velocity_m_s), or a mesh");
     };
     refuse(!s.velocity.isZero(0.0), ".velocity_m_s");
     refuse(!s.angular_velocity.isZero(0.0), ".angular_velocity_rad_s");
@@ -211,27 +256,34 @@ void validate_collider(const ColliderSettings& s, bool hot, const std::string& p
   if (s.rigid() && s.pivot)
     errors.add(path + ".pivot_m", "a rigid body turns about its centre of mass: leave this out");
   validate_keyframes(s, path, errors);
-  if (s.temperature && !hot) errors.add(path + ".temperature_K", "no material has heat; give it one, or leave this out");
-  if (s.temperature && !s.wall) errors.add(path + ".temperature_K", "heat passes through walls only; set wall = true, or leave this out");
+  if (s.temperature && !hot)
+    errors.add(path + ".temperature_K", "no material has heat; give it one, or leave this out");
+  if (s.temperature && !s.wall)
+    errors.add(path + ".temperature_K", "heat passes through walls only; set wall = true, or leave this out");
 }
 
 void validate_ambient(const Scene& scene, std::size_t n_hot, SceneErrors& errors) {
   const AmbientSettings& s = *scene.ambient;
   if (!s.temperature) errors.add("ambient.temperature_K", "missing: of the air and of what is radiated to");
   if (n_hot == 0) return errors.add("ambient", "no material has heat; give it one, or leave this out");
-  const bool radiates = std::any_of(scene.materials.begin(), scene.materials.end(), [](const auto& m) { return m.heat && m.heat->emissivity > 0.0; });
+  const bool radiates = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                    [](const auto& m) { return m.heat && m.heat->emissivity > 0.0; });
   if (s.heat_transfer == 0.0 && !radiates)
-    errors.add("ambient.heat_transfer_W_m2K", "is 0 and no material has an emissivity, so nothing is lost; give one of them, or leave [ambient] out");
+    errors.add("ambient.heat_transfer_W_m2K",
+               "is 0 and no material has an emissivity, so nothing is lost; give one of them, or leave [ambient] out");
 }
 
-void validate_heat_source(const HeatSourceSettings& s, std::size_t n_hot, const std::string& path, SceneErrors& errors) {
+void validate_heat_source(const HeatSourceSettings& s, std::size_t n_hot, const std::string& path,
+                          SceneErrors& errors) {
   if (n_hot == 0) return errors.add(path, "no material has heat; give it one, or leave this out");
   if (s.power && (s.temperature || s.heat_transfer))
     errors.add(path + ".power_W", "give power_W, or temperature_K and heat_transfer_W_m2K, not both");
-  if (!s.power && !s.temperature) errors.add(path + ".power_W", "missing: give power_W, or temperature_K and heat_transfer_W_m2K");
+  if (!s.power && !s.temperature)
+    errors.add(path + ".power_W", "missing: give power_W, or temperature_K and heat_transfer_W_m2K");
   if (!s.power && s.temperature && !s.heat_transfer)
     errors.add(path + ".heat_transfer_W_m2K", "missing: how much passes from the gas of temperature_K");
-  if (s.until && !(*s.until > s.from)) errors.add(path + ".until_s", fmt::format("must be after from_s = {}, is {}", s.from, *s.until));
+  if (s.until && !(*s.until > s.from))
+    errors.add(path + ".until_s", fmt::format("must be after from_s = {}, is {}", s.from, *s.until));
 }
 
 /// Energies want the specific heat of all materials.
@@ -243,8 +295,9 @@ void validate_specific_heats(const Scene& scene, SceneErrors& errors) {
     const MaterialSettings& m = scene.materials[k];
     if (!m.heat || known(m) || !(some || exchange)) continue;
     errors.add(fmt::format("material.{}.heat.specific_heat_J_kgK", k),
-               fmt::format("missing: {}", some ? "another material has it, and heat passes between them"
-                                               : "[ambient] and [[heat_source]] exchange energy, which it turns into temperature"));
+               fmt::format("missing: {}",
+                           some ? "another material has it, and heat passes between them"
+                                : "[ambient] and [[heat_source]] exchange energy, which it turns into temperature"));
   }
 }
 
@@ -254,7 +307,8 @@ void validate_periodic(const PeriodicSettings& s, SceneErrors& errors) {
   if (!s.lower || !s.upper) return;
   for (int a = 0; a < 3; ++a)
     if (s.axes.find("xyz"[a]) != std::string::npos && !((*s.upper)[a] > (*s.lower)[a]))
-      errors.add("periodic.upper_m", fmt::format("must be above lower_m along {}, is {} and {}", "xyz"[a], (*s.upper)[a], (*s.lower)[a]));
+      errors.add("periodic.upper_m",
+                 fmt::format("must be above lower_m along {}, is {} and {}", "xyz"[a], (*s.upper)[a], (*s.lower)[a]));
 }
 
 void validate_camera(const Scene& scene, SceneErrors& errors) {
@@ -262,26 +316,31 @@ void validate_camera(const Scene& scene, SceneErrors& errors) {
   if (s.eye && s.target && (*s.eye - *s.target).norm() < 1e-9)
     errors.add("camera.target_m", "is the eye itself; choose another point to look at");
   if (s.focal_length && s.vertical_fov_deg)
-    errors.add("camera.focal_length_m", "give vertical_fov_deg or focal_length_m, not both: one follows from the other");
-  if (s.focus_distance && !s.f_number) errors.add("camera.focus_distance_m", "without f_number all is sharp; give one, or leave this out");
+    errors.add("camera.focal_length_m",
+               "give vertical_fov_deg or focal_length_m, not both: one follows from the other");
+  if (s.focus_distance && !s.f_number)
+    errors.add("camera.focus_distance_m", "without f_number all is sharp; give one, or leave this out");
   for (std::size_t k = 0; k < s.keyframes.size(); ++k) {
     const CameraKeyframeSettings& key = s.keyframes[k];
     const std::string path = fmt::format("camera.keyframes.{}", k);
     if (k > 0 && !(key.time > s.keyframes[k - 1].time))
-      errors.add(path + ".time_s", fmt::format("must be later than the keyframe before, at {} s, is {}", s.keyframes[k - 1].time, key.time));
+      errors.add(path + ".time_s", fmt::format("must be later than the keyframe before, at {} s, is {}",
+                                               s.keyframes[k - 1].time, key.time));
     if (key.eye && key.target && (*key.eye - *key.target).norm() < 1e-9)
       errors.add(path + ".target_m", "is the eye itself; choose another point to look at");
   }
   const double pixels = static_cast<double>(s.width) * s.height;
   if (pixels > static_cast<double>(max_picture_pixels))
-    errors.add("camera.width", fmt::format("{} x {} pixels would take {:.1f} GB of memory; at most {} pixels in all are drawn", s.width, s.height,
-                                           pixels * static_cast<double>(film_bytes_per_pixel) * 1e-9, max_picture_pixels));
+    errors.add("camera.width",
+               fmt::format("{} x {} pixels would take {:.1f} GB of memory; at most {} pixels in all are drawn", s.width,
+                           s.height, pixels * static_cast<double>(film_bytes_per_pixel) * 1e-9, max_picture_pixels));
 }
 
 void validate_environment(const Scene& scene, SceneErrors& errors) {
   const EnvironmentSettings& s = scene.environment;
   if (s.kind != "image") {
-    if (!s.image.empty()) errors.add("environment.image", fmt::format("goes with kind = \"image\" alone, which is \"{}\"", s.kind));
+    if (!s.image.empty())
+      errors.add("environment.image", fmt::format("goes with kind = \"image\" alone, which is \"{}\"", s.kind));
     return;
   }
   if (s.image.empty()) return errors.add("environment.image", "missing: the panorama's file, .exr or .hdr");
@@ -293,11 +352,14 @@ void validate_environment(const Scene& scene, SceneErrors& errors) {
 }
 
 void validate_look(const Scene& scene, SceneErrors& errors) {
-  const bool hot = !scene.materials.empty() && std::all_of(scene.materials.begin(), scene.materials.end(), [](const auto& m) { return m.heat.has_value(); });
+  const bool hot = !scene.materials.empty() && std::all_of(scene.materials.begin(), scene.materials.end(),
+                                                           [](const auto& m) { return m.heat.has_value(); });
   if (scene.look.material == "lava" && !hot)
-    errors.add("look.material", "lava glows by its temperature, but the material has no heat; give it one, or take rock");
+    errors.add("look.material",
+               "lava glows by its temperature, but the material has no heat; give it one, or take rock");
   if (scene.look.black_body && !hot)
-    errors.add("look.black_body", "glows by the temperature, but the material has no heat; give it one, or leave this out");
+    errors.add("look.black_body",
+               "glows by the temperature, but the material has no heat; give it one, or leave this out");
   if (scene.look.crust && !scene.particles.rest_position)
     errors.add("look.crust", "moves with the material: set rest_position = true in [particles] too");
 }
@@ -307,14 +369,17 @@ void validate_look(const Scene& scene, SceneErrors& errors) {
 void validate_scene(const Scene& scene, SceneErrors& errors) {
   if (scene.particles.count && scene.particles.spacing)
     errors.add("particles.spacing_m", "give count or spacing_m, not both");
-  if (!scene.particles.count && !scene.particles.spacing) errors.add("particles.count", "missing: give count or spacing_m");
+  if (!scene.particles.count && !scene.particles.spacing)
+    errors.add("particles.count", "missing: give count or spacing_m");
   if (scene.shot.name.find('/') != std::string::npos) errors.add("shot.name", "names a folder and must not hold a /");
 
   if (scene.materials.empty()) errors.add("material", "missing: a scene needs at least one [[material]]");
-  if (scene.bodies.empty() && scene.emitters.empty()) errors.add("body", "missing: a scene needs at least one [[body]] or [[emitter]]");
+  if (scene.bodies.empty() && scene.emitters.empty())
+    errors.add("body", "missing: a scene needs at least one [[body]] or [[emitter]]");
   if (scene.bodies.empty() && scene.particles.count)
     errors.add("particles.count", "counts the particles of bodies, and there are none; give spacing_m");
-  if (scene.materials.size() > 255) errors.add("material", fmt::format("up to 255 are possible, there are {}", scene.materials.size()));
+  if (scene.materials.size() > 255)
+    errors.add("material", fmt::format("up to 255 are possible, there are {}", scene.materials.size()));
   std::set<std::string> names;
   std::size_t n_hot = 0;
   for (std::size_t k = 0; k < scene.materials.size(); ++k) {
@@ -326,6 +391,7 @@ void validate_scene(const Scene& scene, SceneErrors& errors) {
   }
   if (n_hot != 0 && n_hot != scene.materials.size())
     errors.add("material", "either all materials of a scene have heat or none: heat would stop at the ones without");
+  validate_power_law(scene, errors);
   validate_bodies(scene, errors);
 
   for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
@@ -335,9 +401,12 @@ void validate_scene(const Scene& scene, SceneErrors& errors) {
     if (scene.colliders[k].mesh != "ground") validate_mesh_file(scene, scene.colliders[k].mesh, path, errors);
     validate_terrain(scene.colliders[k], path, errors);
   }
-  for (std::size_t k = 0; k < scene.emitters.size(); ++k) validate_emitter(scene, scene.emitters[k], fmt::format("emitter.{}", k), errors);
-  if (scene.emitters.size() > 255) errors.add("emitter", fmt::format("up to 255 are possible, there are {}", scene.emitters.size()));
-  for (std::size_t k = 0; k < scene.outflows.size(); ++k) validate_outflow(scene.outflows[k], fmt::format("outflow.{}", k), errors);
+  for (std::size_t k = 0; k < scene.emitters.size(); ++k)
+    validate_emitter(scene, scene.emitters[k], fmt::format("emitter.{}", k), errors);
+  if (scene.emitters.size() > 255)
+    errors.add("emitter", fmt::format("up to 255 are possible, there are {}", scene.emitters.size()));
+  for (std::size_t k = 0; k < scene.outflows.size(); ++k)
+    validate_outflow(scene.outflows[k], fmt::format("outflow.{}", k), errors);
   validate_specific_heats(scene, errors);
   if (scene.ambient) validate_ambient(scene, n_hot, errors);
   for (std::size_t k = 0; k < scene.heat_sources.size(); ++k)

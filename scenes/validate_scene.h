@@ -30,7 +30,8 @@ class SceneErrors {
   std::vector<Entry> entries_;
 };
 
-/// Adds what contradicts itself or the world: count against spacing, jump number against rest viscosity, names, files, ranges.
+/// Adds what contradicts itself or the world: count against spacing, jump number against rest viscosity, names, files,
+/// ranges.
 void validate_scene(const Scene& scene, SceneErrors& errors);
 
 }  // namespace smelt

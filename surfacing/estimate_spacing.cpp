@@ -40,7 +40,8 @@ double median_nearest_distance(std::span<const Vec3> position) {
   // From bins with a particle each, were the box full, to ones large enough for most to have a neighbour.
   double edge = size / std::cbrt(static_cast<double>(position.size()));
   for (; edge > 0.0 && edge <= 2.0 * size; edge *= 2.0)
-    if (const double median = quantile(nearest_distances(sort_into_bins(position, edge)), 0.5); median <= edge) return median;
+    if (const double median = quantile(nearest_distances(sort_into_bins(position, edge)), 0.5); median <= edge)
+      return median;
   return 0.0;
 }
 
@@ -57,12 +58,15 @@ double fullest_filling(std::span<const Vec3> position, double spacing, double wi
 double estimate_spacing(std::span<const Vec3> position) {
   for (std::size_t i = 0; i < position.size(); ++i)
     if (!position[i].allFinite())
-      fail("particle {} is at ({}, {}, {}): positions must be finite", i, position[i][0], position[i][1], position[i][2]);
+      fail("particle {} is at ({}, {}, {}): positions must be finite", i, position[i][0], position[i][1],
+           position[i][2]);
   if (position.size() < 8)
-    fail("{} particle{} too few to tell how far apart particles are; give --spacing_m", position.size(), position.size() == 1 ? " is" : "s are");
+    fail("{} particle{} too few to tell how far apart particles are; give --spacing_m", position.size(),
+         position.size() == 1 ? " is" : "s are");
   double spacing = median_nearest_distance(position);
   if (!(spacing > 0.0))
-    fail("most particles are at the same place as another, at ({}, {}, {}) m the first; is the file whole?", position[0][0], position[0][1], position[0][2]);
+    fail("most particles are at the same place as another, at ({}, {}, {}) m the first; is the file whole?",
+         position[0][0], position[0][1], position[0][2]);
   // Twice as wide a kernel finds as much in a body, half as much in a sheet.
   if (fullest_filling(position, spacing, 3.0) < 0.7 * fullest_filling(position, spacing, 1.5)) return spacing;
   for (int round = 0; round < 20; ++round) {

@@ -27,7 +27,8 @@ struct Moments {
 Moments sum_moments(const LocalParticles<0>& near, const Vec3f& at) {
   std::array<Lanes, 10> sum{};
   for (std::size_t j = 0; j < near.size; j += LocalParticles<0>::lanes) {
-    const Float8 x = 0.5f * (load8(&near.x[0][j]) - at[0]), y = 0.5f * (load8(&near.x[1][j]) - at[1]), z = 0.5f * (load8(&near.x[2][j]) - at[2]);
+    const Float8 x = 0.5f * (load8(&near.x[0][j]) - at[0]), y = 0.5f * (load8(&near.x[1][j]) - at[1]),
+                 z = 0.5f * (load8(&near.x[2][j]) - at[2]);
     const Float8 r_squared = x * x + y * y + z * z;
     const Float8 w = load8(&near.volume[j]) * positive_part(1.0f - r_squared * sqrt(r_squared));
     const Float8 wx = w * x, wy = w * y, wz = w * z;
@@ -58,12 +59,14 @@ KernelShape to_shape(const Moments& moments, double h) {
   covariance << s[0], s[3], s[4], s[3], s[1], s[5], s[4], s[5], s[2];
   covariance = covariance / weight - mean * mean.transpose();
   const Eigen::SelfAdjointEigenSolver<Mat3> axes = Eigen::SelfAdjointEigenSolver<Mat3>().computeDirect(covariance);
-  const double trust = std::clamp((weight - 2.0) / 3.0, 0.0, 1.0);  // how many neighbours there are: 1 or less to 4 or more
+  const double trust =
+      std::clamp((weight - 2.0) / 3.0, 0.0, 1.0);  // how many neighbours there are: 1 or less to 4 or more
   Mat3 inverse = Mat3::Zero();
   Vec3 squares = Vec3::Zero();
   Vec3 stretches;
   for (int k = 0; k < 3; ++k) {
-    const double measured = std::clamp(std::pow(std::max(0.0, axes.eigenvalues()[k]) / bulk_variance, flattening), least_stretch, most_stretch);
+    const double measured = std::clamp(std::pow(std::max(0.0, axes.eigenvalues()[k]) / bulk_variance, flattening),
+                                       least_stretch, most_stretch);
     const double stretch = h * (1.0 + trust * (measured - 1.0));
     const Vec3 e = axes.eigenvectors().col(k);
     inverse += e * e.transpose() / (stretch * stretch);
@@ -113,7 +116,8 @@ KernelShapes compute_kernel_shapes(const ParticleBins& bins, const SurfaceRegion
         LocalParticles<0> near;
         for (std::size_t b = begin; b < end; ++b) {
           if (wanted[b] == 0) continue;
-          gather_particles(near, bins, ones, bins.box(b), half_reach, [](std::uint32_t) { return std::array<float, 0>{}; });
+          gather_particles(near, bins, ones, bins.box(b), half_reach,
+                           [](std::uint32_t) { return std::array<float, 0>{}; });
           for (std::uint32_t j = bins.begin[b]; j < bins.begin[b + 1]; ++j) {
             const Vec3f at = ((bins.position(b, j) - near.origin) / half_reach).cast<float>();
             shapes.shape[shapes.first[b] + j - bins.begin[b]] = to_shape(sum_moments(near, at), h);

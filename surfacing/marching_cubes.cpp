@@ -28,7 +28,8 @@ struct Window {
   float at(int i, int j, int k) const { return f[i + halo * (j + halo * k)]; }
 };
 
-/// Sample minus iso-value, never 0: the rule for ties of marching_cubes.h. A function of the sample alone, so all cells agree.
+/// Sample minus iso-value, never 0: the rule for ties of marching_cubes.h. A function of the sample alone, so all cells
+/// agree.
 float above_iso(float sample, float iso) {
   const float f = sample - iso;
   return f == 0.0f ? iso * tie_lift : f;
@@ -63,7 +64,9 @@ Window load_window(const SparseField& field, const Lattice& p, const Neighbours&
           here == SparseField::no_block ? nullptr : &field.value[here * SparseField::block_size + offset];
       float* f = &w.f[halo * (j + halo * k)];
       for (int i = 0; i < edge; ++i) f[i] = above_iso(line ? line[i] : absent[above], iso);
-      f[edge] = above_iso(next == SparseField::no_block ? absent[above | 1] : field.value[next * SparseField::block_size + offset], iso);
+      f[edge] = above_iso(
+          next == SparseField::no_block ? absent[above | 1] : field.value[next * SparseField::block_size + offset],
+          iso);
       unsigned bits = 0;
       for (int i = 0; i < halo; ++i) bits |= static_cast<unsigned>(f[i] >= 0.0f) << i;
       w.row[j + halo * k] = bits;

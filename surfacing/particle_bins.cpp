@@ -40,7 +40,8 @@ std::vector<Entry> sorted_entries(std::span<const Vec3> position, double edge) {
   });
   tbb::parallel_sort(
       entries, [](const Entry& a, const Entry& b) { return a.key != b.key ? a.key < b.key : a.particle < b.particle; });
-  const auto bad = std::find_if(entries.rbegin(), entries.rend(), [](const Entry& e) { return e.key != ~std::uint64_t{0}; });
+  const auto bad =
+      std::find_if(entries.rbegin(), entries.rend(), [](const Entry& e) { return e.key != ~std::uint64_t{0}; });
   if (bad != entries.rbegin()) {
     const std::uint32_t first = bad.base()->particle;
     bin_key(position[first], edge, first);

@@ -15,10 +15,10 @@ namespace smelt {
 /// Bin b holds the sorted particles begin[b] .. begin[b + 1] - 1. Bins ascend by key; within a bin particles keep the
 /// order of the input, so every sum over a bin runs in a fixed order.
 struct ParticleBins {
-  double edge = 0.0;                         ///< of a bin [m]; bin (i, j, k) spans [i, i + 1) * edge and so on
-  std::vector<std::uint64_t> key;            ///< lattice_key of each occupied bin
-  std::vector<std::uint32_t> begin;          ///< one more than there are bins
-  std::vector<std::uint32_t> index;          ///< sorted particle -> particle of the input
+  double edge = 0.0;                 ///< of a bin [m]; bin (i, j, k) spans [i, i + 1) * edge and so on
+  std::vector<std::uint64_t> key;    ///< lattice_key of each occupied bin
+  std::vector<std::uint32_t> begin;  ///< one more than there are bins
+  std::vector<std::uint32_t> index;  ///< sorted particle -> particle of the input
   /// From the lower corner of its bin [edges], in [0, 1], in sorted order; 8 more behind them, so that a register may
   /// be loaded anywhere.
   std::array<std::vector<float>, 3> offset;

@@ -38,10 +38,10 @@ Vector umbrella(const VertexNeighbours& near, const std::vector<Vector>& x, std:
   return sum / static_cast<Scalar>(near.begin[v + 1] - near.begin[v]) - x[v];
 }
 
-/// Factors w_k of steps x += w_k s L x (L the umbrella) that do what `passes` steps of 0.8 do, in fewer: prod_k (1 - w_k t)
-/// has the slope -0.8 passes at t = 0, so long waves are damped alike, and stays below 1 % on the rest of [0, 2], where
-/// the eigenvalues of -s L lie. That is a Chebyshev polynomial on [a, 2], which of all polynomials does it in the fewest
-/// steps [Varga 1962]: about 2 sqrt(passes).
+/// Factors w_k of steps x += w_k s L x (L the umbrella) that do what `passes` steps of 0.8 do, in fewer: prod_k (1 -
+/// w_k t) has the slope -0.8 passes at t = 0, so long waves are damped alike, and stays below 1 % on the rest of [0,
+/// 2], where the eigenvalues of -s L lie. That is a Chebyshev polynomial on [a, 2], which of all polynomials does it in
+/// the fewest steps [Varga 1962]: about 2 sqrt(passes).
 std::vector<float> step_factors(int passes) {
   constexpr double ripple = 0.01;
   const double slope = static_cast<double>(step) * passes, decay = std::acosh(1.0 / ripple);
@@ -53,7 +53,8 @@ std::vector<float> step_factors(int passes) {
     for (int k = 0; k < n; ++k) {
       // Large and small steps in turn, from both ends, so that nothing grows on the way.
       const int root = k % 2 == 0 ? k / 2 : n - 1 - k / 2;
-      factors.push_back(static_cast<float>(2.0 / (2.0 + a - (2.0 - a) * std::cos(std::numbers::pi * (root + 0.5) / n))));
+      factors.push_back(
+          static_cast<float>(2.0 / (2.0 + a - (2.0 - a) * std::cos(std::numbers::pi * (root + 0.5) / n))));
     }
     return factors;
   }
@@ -86,14 +87,16 @@ struct Measure {
   }
 };
 
-Measure measure_face(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t, std::span<const float> strength, const Vec3& origin) {
+Measure measure_face(const TriangleMesh& mesh, const std::array<std::uint32_t, 3>& t, std::span<const float> strength,
+                     const Vec3& origin) {
   const Vec3 a = mesh.vertices[t[0]] - origin, b = mesh.vertices[t[1]] - origin, c = mesh.vertices[t[2]] - origin;
-  return {a.dot(b.cross(c)) / 6.0, (b - a).cross(c - a).norm() / 6.0 * (strength[t[0]] + strength[t[1]] + strength[t[2]]),
+  return {a.dot(b.cross(c)) / 6.0,
+          (b - a).cross(c - a).norm() / 6.0 * (strength[t[0]] + strength[t[1]] + strength[t[2]]),
           ((b - a).norm() + (c - b).norm() + (a - c).norm()) / 3.0, 1.0};
 }
 
-/// Of each piece that is not `done`. Faces are summed in blocks of fixed size, and these in order: the same bytes on any
-/// number of threads.
+/// Of each piece that is not `done`. Faces are summed in blocks of fixed size, and these in order: the same bytes on
+/// any number of threads.
 std::vector<Measure> measure(const TriangleMesh& mesh, const MeshComponents& pieces, std::span<const float> strength,
                              const std::vector<std::uint8_t>& done) {
   struct Part {
@@ -125,17 +128,19 @@ Vec3f normal_at(const TriangleMesh& mesh, const VertexNeighbours& near, std::siz
   const Vec3& a = mesh.vertices[v];
   Vec3f sum = Vec3f::Zero();
   for (std::uint32_t n = near.begin[v]; n < near.begin[v + 1]; ++n) {
-    const Vec3f b = (mesh.vertices[near.neighbour[n]] - a).cast<float>(), c = (mesh.vertices[near.third[n]] - a).cast<float>();
+    const Vec3f b = (mesh.vertices[near.neighbour[n]] - a).cast<float>(),
+                c = (mesh.vertices[near.third[n]] - a).cast<float>();
     sum += b.cross(c);
   }
   return sum.normalized();
 }
 
 /// Newton's method on the shift of each piece along its normals: d volume / d shift = area. Small pieces that shrank a
-/// lot overshoot at first, hence up to 8 rounds; large ones are done after one. A vertex moves by no more than half an edge a round: where
-/// little of a piece is smoothed that little cannot give back all the volume, and must not fly off in trying.
-void restore_volumes(TriangleMesh& mesh, const MeshComponents& pieces, const VertexNeighbours& near, std::span<const float> strength,
-                     const std::vector<Measure>& before) {
+/// lot overshoot at first, hence up to 8 rounds; large ones are done after one. A vertex moves by no more than half an
+/// edge a round: where little of a piece is smoothed that little cannot give back all the volume, and must not fly off
+/// in trying.
+void restore_volumes(TriangleMesh& mesh, const MeshComponents& pieces, const VertexNeighbours& near,
+                     std::span<const float> strength, const std::vector<Measure>& before) {
   std::vector<std::uint8_t> done(pieces.count);
   for (int round = 0; round < 8; ++round) {
     const std::vector<Measure> now = measure(mesh, pieces, strength, done);

@@ -78,9 +78,12 @@ void sort_unique(std::vector<std::uint64_t>& keys) {
 template <typename Keep>
 std::vector<std::uint64_t> select(const std::vector<std::uint64_t>& keys, Keep&& keep) {
   std::vector<std::uint8_t> kept(keys.size());
-  parallel_blocks(keys.size(), [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) kept[i] = keep(keys[i]);
-  }, 64);
+  parallel_blocks(
+      keys.size(),
+      [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) kept[i] = keep(keys[i]);
+      },
+      64);
   std::vector<std::uint64_t> out;
   for (std::size_t i = 0; i < keys.size(); ++i)
     if (kept[i] != 0) out.push_back(keys[i]);
@@ -88,7 +91,8 @@ std::vector<std::uint64_t> select(const std::vector<std::uint64_t>& keys, Keep&&
 }
 
 /// Absent neighbours of `blocks` that lie inside.
-std::vector<std::uint64_t> find_deep(const SparseField& field, const std::vector<std::uint64_t>& blocks, const SurfaceRegion& region) {
+std::vector<std::uint64_t> find_deep(const SparseField& field, const std::vector<std::uint64_t>& blocks,
+                                     const SurfaceRegion& region) {
   std::vector<std::uint64_t> absent;
   for (const std::uint64_t block : blocks)
     for_each_neighbour(block, [&](const Lattice&, std::uint64_t key) {
@@ -99,7 +103,8 @@ std::vector<std::uint64_t> find_deep(const SparseField& field, const std::vector
 }
 
 /// Adds weight W(q) for all samples of a block; q^2 = d^T M d, d [cells] from `centre`, which is relative to sample 0.
-void accumulate_particle(float* sample, const Vec3f& centre, const std::array<float, 6>& m, const std::array<float, 3>& reach, float weight) {
+void accumulate_particle(float* sample, const Vec3f& centre, const std::array<float, 6>& m,
+                         const std::array<float, 3>& reach, float weight) {
   static_assert(edge == 8, "a row of samples is one register");
   const Float8 dx = Float8{0, 1, 2, 3, 4, 5, 6, 7} - centre[0];
   const Float8 dx_squared = m[0] * dx * dx;
@@ -111,7 +116,8 @@ void accumulate_particle(float* sample, const Vec3f& centre, const std::array<fl
   for (int k = k_low; k <= k_high; ++k)
     for (int j = j_low; j <= j_high; ++j) {
       const float dz = static_cast<float>(k) - centre[2], dy = static_cast<float>(j) - centre[1];
-      const float linear = 2.0f * (m[3] * dy + m[4] * dz), rest = m[1] * dy * dy + m[2] * dz * dz + 2.0f * m[5] * dy * dz;
+      const float linear = 2.0f * (m[3] * dy + m[4] * dz),
+                  rest = m[1] * dy * dy + m[2] * dz * dz + 2.0f * m[5] * dy * dz;
       // The least q^2 of the row is rest - linear^2/(4 M_xx).
       if (four_m * (rest - 4.0f) >= linear * linear) continue;
       const Float8 q_squared = dx_squared + (linear * dx + rest);
@@ -121,7 +127,8 @@ void accumulate_particle(float* sample, const Vec3f& centre, const std::array<fl
 }
 
 /// The particles of one bin, into a block whose first sample is at `first`.
-void accumulate_bin(float* sample, const ChiSource& source, const KernelShape& plain, std::size_t bin, const Vec3& first, double cell) {
+void accumulate_bin(float* sample, const ChiSource& source, const KernelShape& plain, std::size_t bin,
+                    const Vec3& first, double cell) {
   const ParticleBins& bins = source.bins;
   const Vec3f corner = ((bins.origin(bin) - first) / cell).cast<float>();
   const auto cells_per_edge = static_cast<float>(bins.edge / cell), per_metre = static_cast<float>(1.0 / cell);
@@ -168,7 +175,8 @@ void compute_blocks(SparseField& field, const ChiSource& source, const std::vect
           alignas(32) float sample[SparseField::block_size] = {};
           for_each_bin(source.bins, first.array() - reach, first.array() + (field.cell * (edge - 1) + reach),
                        [&](std::size_t bin) { accumulate_bin(sample, source, plain, bin, first, field.cell); });
-          std::copy(std::begin(sample), std::end(sample), field.value.begin() + field.find(blocks[b]) * SparseField::block_size);
+          std::copy(std::begin(sample), std::end(sample),
+                    field.value.begin() + field.find(blocks[b]) * SparseField::block_size);
         }
       },
       1);
@@ -194,7 +202,8 @@ std::vector<std::uint64_t> find_open_deep(const SparseField& field, float iso) {
     bool open = false;
     for_each_neighbour(deep, [&](const Lattice& way, std::uint64_t key) {
       const std::size_t block = open ? SparseField::no_block : field.find(key);
-      open = open || (block != SparseField::no_block && is_open_towards(field, block, {-way[0], -way[1], -way[2]}, iso));
+      open =
+          open || (block != SparseField::no_block && is_open_towards(field, block, {-way[0], -way[1], -way[2]}, iso));
     });
     return open;
   });
@@ -213,7 +222,8 @@ void add_blocks(SparseField& field, const std::vector<std::uint64_t>& blocks) {
   field.value.resize(field.n_blocks() * SparseField::block_size);
   for (std::size_t b = 0, at = 0; b < old.n_blocks(); ++b) {
     while (field.key[at] != old.key[b]) ++at;
-    std::copy_n(old.value.begin() + b * SparseField::block_size, SparseField::block_size, field.value.begin() + at * SparseField::block_size);
+    std::copy_n(old.value.begin() + b * SparseField::block_size, SparseField::block_size,
+                field.value.begin() + at * SparseField::block_size);
   }
 }
 
@@ -231,10 +241,12 @@ float SparseField::absent_value(std::uint64_t block_key) const {
 float SparseField::sample(int i, int j, int k) const {
   const std::uint64_t block_key = lattice_key(i >> 3, j >> 3, k >> 3);
   const std::size_t block = find(block_key);
-  return block == no_block ? absent_value(block_key) : value[block * block_size + ((k & 7) * edge + (j & 7)) * edge + (i & 7)];
+  return block == no_block ? absent_value(block_key)
+                           : value[block * block_size + ((k & 7) * edge + (j & 7)) * edge + (i & 7)];
 }
 
-SparseField allocate_field(const ParticleBins& bins, double radius, double cell, double memory_limit, const SurfaceRegion* region) {
+SparseField allocate_field(const ParticleBins& bins, double radius, double cell, double memory_limit,
+                           const SurfaceRegion* region) {
   // How many blocks the bins name between them, most of them several times: known before anything is allocated.
   const std::size_t n_bins = bins.n_bins();
   std::vector<BlockRange> ranges(n_bins);
@@ -266,13 +278,15 @@ SparseField allocate_field(const ParticleBins& bins, double radius, double cell,
         for (int x = ranges[b].low[0]; x <= ranges[b].high[0]; ++x) field.key[at++] = lattice_key(x, y, z);
   });
   sort_unique(field.key);
-  if (region) field.key = select(field.key, [&](std::uint64_t key) { return region->touches_surface(box_of(key, cell)); });
+  if (region)
+    field.key = select(field.key, [&](std::uint64_t key) { return region->touches_surface(box_of(key, cell)); });
   check_memory(static_cast<double>(field.n_blocks()), cell, memory_limit);
   if (region) field.deep = find_deep(field, field.key, *region);
   return field;
 }
 
-SparseField compute_chi(const ChiSource& source, double cell, float iso, double memory_limit, const SurfaceRegion* region) {
+SparseField compute_chi(const ChiSource& source, double cell, float iso, double memory_limit,
+                        const SurfaceRegion* region) {
   CHECK_EQ(source.volume.size(), source.bins.n_particles());
   SparseField field = allocate_field(source.bins, farthest_reach(source), cell, memory_limit, region);
   field.value.resize(field.n_blocks() * SparseField::block_size);

@@ -20,10 +20,11 @@ struct SparseField {
   static constexpr int block_size = block_edge * block_edge * block_edge;
   static constexpr std::size_t no_block = static_cast<std::size_t>(-1);
 
-  double cell = 0.0;                ///< distance between samples [m]
-  std::vector<std::uint64_t> key;   ///< lattice_key of each stored block, ascending
-  std::vector<float> value;         ///< block_size per block, x fastest
-  std::vector<std::uint64_t> deep;  ///< lattice_key of the absent neighbours of stored blocks that lie inside, ascending
+  double cell = 0.0;               ///< distance between samples [m]
+  std::vector<std::uint64_t> key;  ///< lattice_key of each stored block, ascending
+  std::vector<float> value;        ///< block_size per block, x fastest
+  std::vector<std::uint64_t>
+      deep;  ///< lattice_key of the absent neighbours of stored blocks that lie inside, ascending
 
   std::size_t n_blocks() const { return key.size(); }
   /// Position of a block in `key`, or no_block.
@@ -52,6 +53,7 @@ SparseField allocate_field(const ParticleBins& bins, double radius, double cell,
 /// With a `region`, deep blocks are left out, except where chi is below `iso` on the side of a stored block: those are
 /// taken in, until the surface closes. Each block gathers from its particles in their sorted order, so the sums do not
 /// depend on threads. Single precision, relative to the block: absolute error about 1e-6.
-SparseField compute_chi(const ChiSource& source, double cell, float iso, double memory_limit, const SurfaceRegion* region = nullptr);
+SparseField compute_chi(const ChiSource& source, double cell, float iso, double memory_limit,
+                        const SurfaceRegion* region = nullptr);
 
 }  // namespace smelt

@@ -42,8 +42,10 @@ void check_particles(const ParticleFrame& p) {
   CHECK_EQ(p.velocity.size(), p.size());
   const auto elsewhere = [&](const Vec3& x) { return x != p.position.front(); };
   if (p.size() > 1 && std::none_of(p.position.begin(), p.position.end(), elsewhere))
-    fail("surfacing: frame {}: all {} particles are at one place, ({}, {}, {}) m: no fluid is like that; is the file whole?", p.frame, p.size(),
-         p.position[0][0], p.position[0][1], p.position[0][2]);
+    fail(
+        "surfacing: frame {}: all {} particles are at one place, ({}, {}, {}) m: no fluid is like that; is the file "
+        "whole?",
+        p.frame, p.size(), p.position[0][0], p.position[0][1], p.position[0][2]);
   CHECK_EQ(p.density.size(), p.size());
   for (std::size_t i = 0; i < p.size(); ++i)
     if (!(p.density[i] > 0.0f && std::isfinite(p.density[i])))
@@ -75,8 +77,8 @@ SurfaceMesh build_surface(const ParticleFrame& particles, const SurfacingOptions
   const auto iso = static_cast<float>(options.iso_value);
   KernelShapes shapes;
   if (options.anisotropic) shapes = compute_kernel_shapes(bins, region, spacing, h);
-  const SparseField chi = compute_chi({bins, volume, h, options.anisotropic ? &shapes : nullptr}, options.cell_over_spacing * spacing, iso,
-                                      options.memory_limit_bytes, &region);
+  const SparseField chi = compute_chi({bins, volume, h, options.anisotropic ? &shapes : nullptr},
+                                      options.cell_over_spacing * spacing, iso, options.memory_limit_bytes, &region);
 
   SurfaceMesh surface;
   surface.mesh = extract_iso_surface(chi, iso);

@@ -22,11 +22,11 @@ struct SurfacingOptions {
 };
 
 /// The iso-surface of chi(x) = sum_j V_j W(x - x_j, h), V = m/rho  [P 5-7], by marching cubes
-/// (surfacing/marching_cubes.h), then smoothed; a closed, outward oriented 2-manifold. Velocity, and temperature, viscosity
-/// and rest position where `particles` has them, are SPH averages at the vertices. The grid stands still in the world, so a
-/// resting fluid gives a resting mesh. Same input, same bytes, on any number of threads. Throws Error: no particles; a
-/// position that is not finite (names the particle); all of several particles at one place; an option out of range; a grid that would need more than
-/// `memory_limit_bytes` (says how much).
+/// (surfacing/marching_cubes.h), then smoothed; a closed, outward oriented 2-manifold. Velocity, and temperature,
+/// viscosity and rest position where `particles` has them, are SPH averages at the vertices. The grid stands still in
+/// the world, so a resting fluid gives a resting mesh. Same input, same bytes, on any number of threads. Throws Error:
+/// no particles; a position that is not finite (names the particle); all of several particles at one place; an option
+/// out of range; a grid that would need more than `memory_limit_bytes` (says how much).
 SurfaceMesh build_surface(const ParticleFrame& particles, const SurfacingOptions& options);
 
 }  // namespace smelt

@@ -12,8 +12,9 @@ namespace smelt {
 
 namespace {
 
-constexpr int edge = 8;           // nodes along a block
-constexpr int spread = edge + 4;  // with one beyond it each way for the filter, and one more for the particles that reach that
+constexpr int edge = 8;  // nodes along a block
+constexpr int spread =
+    edge + 4;  // with one beyond it each way for the filter, and one more for the particles that reach that
 
 using Window = std::array<float, spread * spread * spread>;
 
@@ -38,9 +39,11 @@ std::vector<std::uint64_t> find_blocks(const ParticleBins& bins, double node) {
 }
 
 /// Spreads the volumes, in cells of a node, of the particles around a block; entry (0, 0, 0) is node (-2, -2, -2).
-void spread_volumes(Window& out, const ParticleBins& bins, std::span<const float> volume, const Vec3& first, double node) {
+void spread_volumes(Window& out, const ParticleBins& bins, std::span<const float> volume, const Vec3& first,
+                    double node) {
   out.fill(0.0f);
-  const auto scale = static_cast<float>(1.0 / (node * node * node)), nodes_per_edge = static_cast<float>(bins.edge / node);
+  const auto scale = static_cast<float>(1.0 / (node * node * node)),
+             nodes_per_edge = static_cast<float>(bins.edge / node);
   for_each_bin(bins, first.array() - 2.0 * node, first.array() + (edge + 1) * node, [&](std::size_t b) {
     const Vec3f corner = ((bins.origin(b) - first) / node).cast<float>().array() + 2.0f;
     for (std::uint32_t j = bins.begin[b]; j < bins.begin[b + 1]; ++j) {
@@ -82,7 +85,8 @@ void filter(Window& f, int stride) {
     }
 }
 
-std::array<std::uint64_t, 8> find_shallow(const ParticleBins& bins, std::span<const float> volume, const Vec3& first, double node) {
+std::array<std::uint64_t, 8> find_shallow(const ParticleBins& bins, std::span<const float> volume, const Vec3& first,
+                                          double node) {
   Window f;
   spread_volumes(f, bins, volume, first, node);
   for (const int stride : {1, spread, spread * spread}) filter(f, stride);

@@ -13,10 +13,12 @@ namespace {
 
 /// h^3 W sums at the particles of one bin.
 template <typename Visit>
-void sum_at_particles(LocalParticles<0>& near, const ParticleBins& bins, std::span<const float> volume, std::size_t bin, double h, Visit&& visit) {
+void sum_at_particles(LocalParticles<0>& near, const ParticleBins& bins, std::span<const float> volume, std::size_t bin,
+                      double h, Visit&& visit) {
   gather_particles(near, bins, volume, bins.box(bin), h, [](std::uint32_t) { return std::array<float, 0>{}; });
   const auto scale = static_cast<float>(1.0 / (h * h * h));
-  for (std::uint32_t j = bins.begin[bin]; j < bins.begin[bin + 1]; ++j) visit(j, scale * sum_at(near, bins.position(bin, j))[0]);
+  for (std::uint32_t j = bins.begin[bin]; j < bins.begin[bin + 1]; ++j)
+    visit(j, scale * sum_at(near, bins.position(bin, j))[0]);
 }
 
 /// Calls body(near, bin) for all bins that `wanted` says yes to, with scratch of each task's own.
@@ -34,7 +36,8 @@ void for_bins(const ParticleBins& bins, Wanted&& wanted, Body&& body) {
 
 }  // namespace
 
-std::vector<float> compute_filling(const ParticleBins& bins, std::span<const float> volume, double h, const SurfaceRegion* region) {
+std::vector<float> compute_filling(const ParticleBins& bins, std::span<const float> volume, double h,
+                                   const SurfaceRegion* region) {
   CHECK_EQ(volume.size(), bins.n_particles());
   std::vector<float> filling(volume.size(), 1.0f);
   const auto wanted = [&](std::size_t b) {
@@ -60,7 +63,8 @@ void strengthen_thin_features(std::span<float> volume, const ParticleBins& bins,
   // All sums first, then all changes: the order of bins must not matter.
   const auto least = static_cast<float>(1.3 * iso);
   const auto may_be_weak = [&](std::size_t b) {
-    return std::any_of(filling.begin() + bins.begin[b], filling.begin() + bins.begin[b + 1], [](float c) { return c < 1.0f; });
+    return std::any_of(filling.begin() + bins.begin[b], filling.begin() + bins.begin[b + 1],
+                       [](float c) { return c < 1.0f; });
   };
   std::vector<float> factor(volume.size(), 1.0f);
   for_bins(bins, may_be_weak, [&](LocalParticles<0>& near, std::size_t b) {

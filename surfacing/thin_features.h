@@ -17,7 +17,8 @@ namespace smelt {
 ///             2   1.00   0.67           0.35                       0.35              0.12     0.04
 /// With a `region`, 1 for particles whose bins are farther than `filling_reach` nodes from it: there c
 /// is above 0.6, which is all that anybody asks.
-std::vector<float> compute_filling(const ParticleBins& bins, std::span<const float> volume, double h, const SurfaceRegion* region = nullptr);
+std::vector<float> compute_filling(const ParticleBins& bins, std::span<const float> volume, double h,
+                                   const SurfaceRegion* region = nullptr);
 constexpr double filling_reach = 0.5;
 
 /// Raises the `volume` that particles of thin features carry into chi, so that drops, threads and sheets keep theirs. A

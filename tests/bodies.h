@@ -27,7 +27,9 @@ inline std::vector<Simplex<2>> make_rectangle(const Vec<2>& lower, const Vec<2>&
   std::vector<Simplex<2>> segments;
   for (std::size_t c = 0; c < 4; ++c)
     for (int k = 0; k < n; ++k) {
-      const auto at = [&](int i) { return i == n ? corners[(c + 1) % 4] : Vec<2>(corners[c] + i * (corners[(c + 1) % 4] - corners[c]) / n); };
+      const auto at = [&](int i) {
+        return i == n ? corners[(c + 1) % 4] : Vec<2>(corners[c] + i * (corners[(c + 1) % 4] - corners[c]) / n);
+      };
       segments.push_back({at(k), at(k + 1)});
     }
   return segments;
@@ -39,8 +41,12 @@ inline std::vector<Simplex<3>> make_sphere(int n, double radius, const Vec3& cen
   for (int octant = 0; octant < 8; ++octant) {
     const Vec3 x((octant & 1) ? -1 : 1, 0, 0), y(0, (octant & 2) ? -1 : 1, 0), z(0, 0, (octant & 4) ? -1 : 1);
     const bool flip = x[0] * y[1] * z[2] < 0.0;
-    const auto at = [&](int i, int j) { return Vec3(centre + radius * ((n - i - j) * x + i * y + j * z).normalized()); };
-    const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) { facets.push_back(flip ? Simplex<3>{a, c, b} : Simplex<3>{a, b, c}); };
+    const auto at = [&](int i, int j) {
+      return Vec3(centre + radius * ((n - i - j) * x + i * y + j * z).normalized());
+    };
+    const auto add = [&](const Vec3& a, const Vec3& b, const Vec3& c) {
+      facets.push_back(flip ? Simplex<3>{a, c, b} : Simplex<3>{a, b, c});
+    };
     for (int i = 0; i < n; ++i)
       for (int j = 0; j < n - i; ++j) {
         add(at(i, j), at(i + 1, j), at(i, j + 1));
@@ -62,7 +68,8 @@ inline std::vector<Simplex<3>> make_brick(const Vec3& lower, const Vec3& upper) 
         x[(axis + 2) % 3] = v ? upper[(axis + 2) % 3] : lower[(axis + 2) % 3];
         return x;
       };
-      Simplex<3> a{corner(false, false), corner(true, false), corner(true, true)}, b{corner(false, false), corner(true, true), corner(false, true)};
+      Simplex<3> a{corner(false, false), corner(true, false), corner(true, true)},
+          b{corner(false, false), corner(true, true), corner(false, true)};
       if (!high) {
         std::swap(a[1], a[2]);
         std::swap(b[1], b[2]);

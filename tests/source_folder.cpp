@@ -2,6 +2,8 @@
 
 namespace smelt {
 
-std::filesystem::path source_folder() { return SMELT_SOURCE_DIR; }
+std::filesystem::path source_folder() {
+  return SMELT_SOURCE_DIR;
+}
 
 }  // namespace smelt

@@ -52,7 +52,8 @@ struct Case {
   std::string profile_x = {}, profile_y = {};  ///< axes of the profiles, with units; empty without profiles
   std::vector<std::string> methods;            ///< each is a line of the plots
   std::vector<double> quick, full;             ///< resolutions, ascending
-  /// Computes with methods[method] at a resolution, on the calling thread where it is in a tbb::task_arena of one. Throws where it cannot.
+  /// Computes with methods[method] at a resolution, on the calling thread where it is in a tbb::task_arena of one.
+  /// Throws where it cannot.
   std::function<Measurement(std::size_t method, double resolution)> run;
 };
 

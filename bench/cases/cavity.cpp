@@ -40,7 +40,8 @@ Measurement run_case(std::size_t, double n) {
   measured.error = std::max(errors.u, errors.v);
   measured.profile->reference = {reference.column[0], reference.column[1]};
   for (int k = 1; k < 40; ++k) measured.profile->computed.add(k / 40.0, interpolate(solver, Vec<2>(0.5, k / 40.0))[0]);
-  measured.picture = draw_speeds(solver.particles(), "Particles coloured by speed: the lid slides to the right.", 1.0, "/ side");
+  measured.picture =
+      draw_speeds(solver.particles(), "Particles coloured by speed: the lid slides to the right.", 1.0, "/ side");
   return measured;
 }
 
@@ -77,20 +78,22 @@ Errors measure(const Solver<2, double>& solver, const Reference& reference, int 
 }
 
 Case make_case() {
-  return {.name = "cavity",
-          .title = "Lid-driven cavity",
-          .measures = "The steady flow in a square box whose lid slides, Re = 1: the largest difference of the velocities on the two middle "
-                      "lines from finite differences.",
-          .good = "Within 2 % of the lid's speed.",
-          .good_error = 0.02,
-          .error_label = "velocity: largest error / lid speed",
-          .resolution_label = "particles along a side",
-          .profile_x = "height on the middle line / side",
-          .profile_y = "horizontal velocity / lid speed",
-          .methods = {"cubic spline, h = 1.4 spacings"},
-          .quick = {10, 20, 30, 40},
-          .full = {20, 30, 40, 60, 80},
-          .run = run_case};
+  return {
+      .name = "cavity",
+      .title = "Lid-driven cavity",
+      .measures =
+          "The steady flow in a square box whose lid slides, Re = 1: the largest difference of the velocities on the "
+          "two middle lines from finite differences.",
+      .good = "Within 2 % of the lid's speed.",
+      .good_error = 0.02,
+      .error_label = "velocity: largest error / lid speed",
+      .resolution_label = "particles along a side",
+      .profile_x = "height on the middle line / side",
+      .profile_y = "horizontal velocity / lid speed",
+      .methods = {"cubic spline, h = 1.4 spacings"},
+      .quick = {10, 20, 30, 40},
+      .full = {20, 30, 40, 60, 80},
+      .run = run_case};
 }
 
 }  // namespace smelt::cavity

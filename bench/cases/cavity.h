@@ -1,6 +1,6 @@
 #pragma once
-// The lid-driven square cavity at Re = 1 [S 4.5.2] against finite differences: four walls, one of which slides. Side, lid speed, density and
-// viscosity are 1.
+// The lid-driven square cavity at Re = 1 [S 4.5.2] against finite differences: four walls, one of which slides. Side,
+// lid speed, density and viscosity are 1.
 
 #include "bench/cases/case.h"
 #include "bench/cases/reference.h"

@@ -4,7 +4,8 @@
 
 namespace smelt {
 
-/// CPU seconds that the calling thread has spent since the object was made: those of a whole computation where it runs on this thread alone.
+/// CPU seconds that the calling thread has spent since the object was made: those of a whole computation where it runs
+/// on this thread alone.
 class CpuClock {
  public:
   double seconds() const { return now() - start_; }

@@ -14,7 +14,7 @@ namespace smelt::dam_break {
 
 namespace {
 
-constexpr double a = 0.146;  // [m]
+constexpr double a = 0.146;   // [m]
 constexpr double last = 3.4;  // T up to which fronts are compared
 
 Measurement run_case(std::size_t method, double n_across) {
@@ -28,7 +28,8 @@ Measurement run_case(std::size_t method, double n_across) {
                        .profile = Profile()};
   for (double t = 0.0; t <= last; t += 0.1) measured.profile->computed.add(t, front_at(run.front, t - origin));
   for (std::size_t k = 0; k < experiment.column[0].size(); ++k)
-    if (experiment.column[0][k] <= last) measured.profile->reference.add(experiment.column[0][k], experiment.column[1][k]);
+    if (experiment.column[0][k] <= last)
+      measured.profile->reference.add(experiment.column[0][k], experiment.column[1][k]);
   measured.picture = draw_speeds(run.particles, "The column at T = 3.4.", a, "/ a");
   return measured;
 }
@@ -84,8 +85,9 @@ double fit_origin(const Reference& run, const Reference& experiment) {
 Case make_case() {
   return {.name = "dam_break",
           .title = "Dam break",
-          .measures = "The front of a water column a x 2a that collapses along a dry floor until T = t sqrt(2g/a) = 3.4, its largest difference "
-                      "from measured fronts, with the origin of time of each experiment fitted.",
+          .measures =
+              "The front of a water column a x 2a that collapses along a dry floor until T = t sqrt(2g/a) = 3.4, its "
+              "largest difference from measured fronts, with the origin of time of each experiment fitted.",
           .good = "Within 10 %: the experiments differ from each other by more.",
           .good_error = 0.1,
           .error_label = "front: largest |position / experiment - 1|",

@@ -15,7 +15,8 @@
 
 namespace smelt::dam_break {
 
-inline constexpr std::array experiments{"koshizuka_oka", "martin_moyce_a1.125in", "martin_moyce_a2.25in"};  ///< references dam_break_*
+inline constexpr std::array experiments{"koshizuka_oka", "martin_moyce_a1.125in",
+                                        "martin_moyce_a2.25in"};  ///< references dam_break_*
 
 struct Collapse {
   Reference front;         ///< column 0: T; column 1: x/a of the foremost particle's outer edge

@@ -73,7 +73,8 @@ HardScene viscosity_jumps(bool relaxed, double courant) {
   // The stress without memory limits the step to a sixtieth of what sound allows: a shorter run.
   const double duration = relaxed ? 0.3 : 0.1;
   constexpr double thin = 1e-2;
-  return {{parameters, {newtonian_material(density, thin), newtonian_material(density, 1e6 * thin)}, {}, std::move(p)}, duration};
+  return {{parameters, {newtonian_material(density, thin), newtonian_material(density, 1e6 * thin)}, {}, std::move(p)},
+          duration};
 }
 
 HardScene thread(double courant) {
@@ -131,14 +132,17 @@ std::string name_of_block(double jump) {
 }
 
 std::vector<HardCase> hard_cases() {
-  std::vector<HardCase> cases{{"two particles 1e-9 m apart that meet at 1 m/s", two_that_meet},
-                              {"two particles 1e-9 m apart within a block", two_within_a_block},
-                              {"viscosity jumps 10^6-fold; relaxed stress", [](double courant) { return viscosity_jumps(true, courant); }},
-                              {"viscosity jumps 10^6-fold; stress at once", [](double courant) { return viscosity_jumps(false, courant); }},
-                              {"thread one particle thick", thread},
-                              {"1 K beside 5000 K", hot_beside_cold}};
-  for (const double jump : jumps()) cases.push_back({name_of_block(jump), [jump](double courant) { return block_with_jump(jump, true, courant); }});
-  for (const int n : {1, 2, 5}) cases.push_back({fmt::format("drop of {}", n), [n](double courant) { return drop(n, courant); }});
+  std::vector<HardCase> cases{
+      {"two particles 1e-9 m apart that meet at 1 m/s", two_that_meet},
+      {"two particles 1e-9 m apart within a block", two_within_a_block},
+      {"viscosity jumps 10^6-fold; relaxed stress", [](double courant) { return viscosity_jumps(true, courant); }},
+      {"viscosity jumps 10^6-fold; stress at once", [](double courant) { return viscosity_jumps(false, courant); }},
+      {"thread one particle thick", thread},
+      {"1 K beside 5000 K", hot_beside_cold}};
+  for (const double jump : jumps())
+    cases.push_back({name_of_block(jump), [jump](double courant) { return block_with_jump(jump, true, courant); }});
+  for (const int n : {1, 2, 5})
+    cases.push_back({fmt::format("drop of {}", n), [n](double courant) { return drop(n, courant); }});
   return cases;
 }
 

@@ -9,7 +9,7 @@
 
 namespace smelt::extremes {
 
-constexpr double energy_bar = 0.01;      ///< share of the kinetic energy at the start that may appear from nowhere
+constexpr double energy_bar = 0.01;       ///< share of the kinetic energy at the start that may appear from nowhere
 constexpr double default_courant = 0.25;  ///< C of the time step, the solver's own
 
 struct HardScene {
@@ -22,11 +22,12 @@ struct HardCase {
   std::function<HardScene(double courant)> make;
 };
 
-/// A block of 216 particles that spins and stretches, far beyond what its yield stress holds. Its stress is relaxed, or follows the strain rate
-/// at once.
+/// A block of 216 particles that spins and stretches, far beyond what its yield stress holds. Its stress is relaxed, or
+/// follows the strain rate at once.
 HardScene block_with_jump(double jump, bool relaxed, double courant);
 
-/// The same block without gravity, and so slow (shear rates of 1e-3 1/s) that most of its viscosity is that of rest: for ever.
+/// The same block without gravity, and so slow (shear rates of 1e-3 1/s) that most of its viscosity is that of rest:
+/// for ever.
 HardScene creeping_block(double jump, bool relaxed, double courant);
 
 /// The jump numbers of the blocks among the hard cases.

@@ -26,7 +26,8 @@ Film trace(const SurfaceMesh& fluid, const RenderScene& scene, double samples, b
   return film;
 }
 
-/// Root mean square of what the red of pixels differs from `expected`, over that; over those alone that show nothing but fluid where `fluid_alone`.
+/// Root mean square of what the red of pixels differs from `expected`, over that; over those alone that show nothing
+/// but fluid where `fluid_alone`.
 double noise(const Film& film, double expected, bool fluid_alone) {
   std::vector<double> differences;
   for (std::size_t i = 0; i < film.size(); ++i)
@@ -39,7 +40,8 @@ struct FurnaceMethod {
   float roughness;
   bool denoise;
 };
-constexpr std::array furnace_methods{FurnaceMethod{MaterialKind::wax, 0.4f, false}, FurnaceMethod{MaterialKind::wax, 0.4f, true},
+constexpr std::array furnace_methods{FurnaceMethod{MaterialKind::wax, 0.4f, false},
+                                     FurnaceMethod{MaterialKind::wax, 0.4f, true},
                                      FurnaceMethod{MaterialKind::metal, 0.5f, false}};
 
 Measurement run_furnace(std::size_t method, double samples) {
@@ -47,7 +49,8 @@ Measurement run_furnace(std::size_t method, double samples) {
   scene.look.material = furnace_methods[method].material;
   scene.look.cold.roughness = furnace_methods[method].roughness;
   Measurement measured;
-  const Film film = trace(make_sphere(1.0, Vec3::Zero(), 128), scene, samples, furnace_methods[method].denoise, measured.cpu_seconds);
+  const Film film =
+      trace(make_sphere(1.0, Vec3::Zero(), 128), scene, samples, furnace_methods[method].denoise, measured.cpu_seconds);
   measured.error = noise(film, 1.0, true);
   return measured;
 }
@@ -76,25 +79,28 @@ Measurement run_black_body(std::size_t, double samples) {
 }  // namespace
 
 Case make_furnace_case() {
-  return {.name = "furnace",
-          .title = "Furnace: noise against samples",
-          .measures = "What pixels of a white sphere differ from the white room that it stands in, root mean square: wax with a coat, the same "
-                      "after the filter, and metal.",
-          .good = "Within 2 %, which an eye does not see.",
-          .good_error = 0.02,
-          .error_label = "radiance: L2 error / exact",
-          .resolution_label = "samples a pixel",
-          .methods = {"wax", "wax, denoised", "metal"},
-          .quick = {1, 4, 16, 64},
-          .full = {1, 4, 16, 64, 256, 1024},
-          .run = run_furnace};
+  return {
+      .name = "furnace",
+      .title = "Furnace: noise against samples",
+      .measures =
+          "What pixels of a white sphere differ from the white room that it stands in, root mean square: wax with a "
+          "coat, the same after the filter, and metal.",
+      .good = "Within 2 %, which an eye does not see.",
+      .good_error = 0.02,
+      .error_label = "radiance: L2 error / exact",
+      .resolution_label = "samples a pixel",
+      .methods = {"wax", "wax, denoised", "metal"},
+      .quick = {1, 4, 16, 64},
+      .full = {1, 4, 16, 64, 256, 1024},
+      .run = run_furnace};
 }
 
 Case make_black_body_case() {
   return {.name = "black_body",
           .title = "Black body: noise of its light against samples",
-          .measures = "The light of a sphere at 1300 K on the floor below it, drawn as light sources and met by rays, against Planck's law and "
-                      "the solid angle: root mean square over pixels.",
+          .measures =
+              "The light of a sphere at 1300 K on the floor below it, drawn as light sources and met by rays, against "
+              "Planck's law and the solid angle: root mean square over pixels.",
           .good = "Within 2 %, which an eye does not see.",
           .good_error = 0.02,
           .error_label = "radiance: L2 error / exact",

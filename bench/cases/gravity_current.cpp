@@ -51,10 +51,11 @@ double way_of(const Vec3& x) {
   return std::hypot(x[0], x[2]);
 }
 
-/// Fluid at rest under `depth(way)` [m] as far as `length` [m], of kinematic viscosity `viscosity` [m^2/s] and volume `volume` [m^Dim], with the
-/// pressure of its weight.
+/// Fluid at rest under `depth(way)` [m] as far as `length` [m], of kinematic viscosity `viscosity` [m^2/s] and volume
+/// `volume` [m^Dim], with the pressure of its weight.
 template <int Dim, typename Depth>
-Solver<Dim, double> make_current(const Choices& choices, double viscosity, double volume, double length, const Depth& depth) {
+Solver<Dim, double> make_current(const Choices& choices, double viscosity, double volume, double length,
+                                 const Depth& depth) {
   const double c = choices.sound_speed / std::sqrt(inertia);
   auto parameters = make_parameters<Dim>(choices.spacing, c);
   parameters.smoothing_length = 1.5 * choices.spacing;
@@ -67,14 +68,18 @@ Solver<Dim, double> make_current(const Choices& choices, double viscosity, doubl
   const auto up = [&](double x) { return std::ceil(x / choices.spacing) * choices.spacing; };
   Box<Dim> box{Vec<Dim>::Zero(), Vec<Dim>::Constant(up(length))};
   box.upper[1] = up(depth(0.0));
-  Particles<Dim> particles = make_lattice<Dim>(box, choices.spacing, density, 0.0,
-                                               [&](const Vec<Dim>& x) { return way_of(x) < length && x[1] < depth(way_of(x)); });
+  Particles<Dim> particles = make_lattice<Dim>(box, choices.spacing, density, 0.0, [&](const Vec<Dim>& x) {
+    return way_of(x) < length && x[1] < depth(way_of(x));
+  });
   for (std::size_t i = 0; i < particles.size(); ++i) {
     const Vec<Dim>& x = particles.position[i];
     particles.density[i] += density * gravity * (depth(way_of(x)) - x[1]) / (c * c);
   }
   parameters.particle_volume = volume / static_cast<double>(particles.size());
-  return {parameters, {newtonian_material(density, density * viscosity / inertia)}, make_bed(Colliders<Dim>()), std::move(particles)};
+  return {parameters,
+          {newtonian_material(density, density * viscosity / inertia)},
+          make_bed(Colliders<Dim>()),
+          std::move(particles)};
 }
 
 template <int Dim>
@@ -107,7 +112,8 @@ Measurement follow_front(Solver<Dim, double> solver, double spacing, double star
 Curve fronts(const Reference& reference, double from, double to) {
   Curve curve;
   for (std::size_t i = 0; i < reference.column[0].size(); ++i)
-    if (reference.column[0][i] >= from && reference.column[0][i] <= to) curve.add(reference.column[0][i], reference.column[1][i]);
+    if (reference.column[0][i] >= from && reference.column[0][i] <= to)
+      curve.add(reference.column[0][i], reference.column[1][i]);
   return curve;
 }
 
@@ -133,7 +139,8 @@ Measurement run_plane_current(const Choices& choices) {
   const auto depth = [&](double x) {
     return std::cbrt(std::max(0.0, 1.0 - x * x / (length * length))) / (mean_over_deepest * length);
   };
-  return follow_front(make_current<2>(choices, 1.0, 1.0, length, depth), choices.spacing, start, fronts(reference, 31.0, 317.0));
+  return follow_front(make_current<2>(choices, 1.0, 1.0, length, depth), choices.spacing, start,
+                      fronts(reference, 31.0, 317.0));
 }
 
 Measurement run_axisymmetric_current(const Choices& choices) {
@@ -143,7 +150,8 @@ Measurement run_axisymmetric_current(const Choices& choices) {
   const auto depth = [&](double r) {
     return 4.0 / (3.0 * std::numbers::pi * length * length) * std::cbrt(std::max(0.0, 1.0 - r * r / (length * length)));
   };
-  return follow_front(make_current<3>(choices, 1.0, quarter, length, depth), choices.spacing, start, fronts(reference, 15.0, 65.0));
+  return follow_front(make_current<3>(choices, 1.0, quarter, length, depth), choices.spacing, start,
+                      fronts(reference, 15.0, 65.0));
 }
 
 Measurement run_viscous_dam_break(const Choices& choices) {
@@ -157,8 +165,9 @@ Measurement run_viscous_dam_break(const Choices& choices) {
 Case make_plane_case() {
   return {.name = "gravity_current",
           .title = "Plane viscous gravity current",
-          .measures = "The front of a fixed volume of viscous fluid that spreads over a floor, from 32 to 316 s, its largest difference from "
-                      "Huppert's similarity solution, with and without the corrected divergence.",
+          .measures =
+              "The front of a fixed volume of viscous fluid that spreads over a floor, from 32 to 316 s, its largest "
+              "difference from Huppert's similarity solution, with and without the corrected divergence.",
           .good = "Within 3 %, with the corrected divergence.",
           .good_error = 0.03,
           .error_label = "front: largest |position / exact - 1|",
@@ -168,42 +177,52 @@ Case make_plane_case() {
           .methods = {"corrected divergence", "plain"},
           .quick = {10, 15, 20},
           .full = {12.5, 15, 20, 30},
-          .run = [](std::size_t method, double per_metre) { return run_plane_current(choices_of(method, per_metre, 14.0)); }};
+          .run = [](std::size_t method, double per_metre) {
+            return run_plane_current(choices_of(method, per_metre, 14.0));
+          }};
 }
 
 Case make_axisymmetric_case() {
-  return {.name = "axisymmetric_current",
-          .title = "Axisymmetric viscous gravity current",
-          .measures = "The front of a cubic metre of viscous fluid that spreads over a floor in all directions, from 16 to 63 s, its largest "
-                      "difference from Huppert's similarity solution, with and without the corrected divergence; a quarter of it between "
-                      "symmetry planes.",
-          .good = "Within 3 %, as the plane current; here the layer is but two rows deep at the end.",
-          .good_error = 0.03,
-          .error_label = "front: largest |radius / exact - 1|",
-          .resolution_label = "particles a metre",
-          .profile_x = "time [s]",
-          .profile_y = "radius of the front [m]",
-          .methods = {"corrected divergence", "plain"},
-          .quick = {10, 14, 20},
-          .full = {14, 20, 28, 36},
-          .run = [](std::size_t method, double per_metre) { return run_axisymmetric_current(choices_of(method, per_metre, 14.0)); }};
+  return {
+      .name = "axisymmetric_current",
+      .title = "Axisymmetric viscous gravity current",
+      .measures =
+          "The front of a cubic metre of viscous fluid that spreads over a floor in all directions, from 16 to 63 s, "
+          "its largest difference from Huppert's similarity solution, with and without the corrected divergence; a "
+          "quarter of it between symmetry planes.",
+      .good = "Within 3 %, as the plane current; here the layer is but two rows deep at the end.",
+      .good_error = 0.03,
+      .error_label = "front: largest |radius / exact - 1|",
+      .resolution_label = "particles a metre",
+      .profile_x = "time [s]",
+      .profile_y = "radius of the front [m]",
+      .methods = {"corrected divergence", "plain"},
+      .quick = {10, 14, 20},
+      .full = {14, 20, 28, 36},
+      .run = [](std::size_t method, double per_metre) {
+        return run_axisymmetric_current(choices_of(method, per_metre, 14.0));
+      }};
 }
 
 Case make_benchmark_case() {
-  return {.name = "lava_benchmark_1",
-          .title = "Lava benchmark 1: viscous dam break",
-          .measures = "The front of lava that is let go behind a dam on a flat floor, from 100 to 550 s, its largest difference from the "
-                      "benchmark's lubrication theory [Cordonnier 2015], with and without the corrected divergence.",
-          .good = "Within 4 %: what is left of inertia is worth 1.6 %.",
-          .good_error = 0.04,
-          .error_label = "front: largest |position / benchmark - 1|",
-          .resolution_label = "particles a metre",
-          .profile_x = "time [s]",
-          .profile_y = "front [m]",
-          .methods = {"corrected divergence", "plain"},
-          .quick = {5, 6, 7.5},
-          .full = {6, 7.5, 10, 14},
-          .run = [](std::size_t method, double per_metre) { return run_viscous_dam_break(choices_of(method, per_metre, 20.0)); }};
+  return {
+      .name = "lava_benchmark_1",
+      .title = "Lava benchmark 1: viscous dam break",
+      .measures =
+          "The front of lava that is let go behind a dam on a flat floor, from 100 to 550 s, its largest difference "
+          "from the benchmark's lubrication theory [Cordonnier 2015], with and without the corrected divergence.",
+      .good = "Within 4 %: what is left of inertia is worth 1.6 %.",
+      .good_error = 0.04,
+      .error_label = "front: largest |position / benchmark - 1|",
+      .resolution_label = "particles a metre",
+      .profile_x = "time [s]",
+      .profile_y = "front [m]",
+      .methods = {"corrected divergence", "plain"},
+      .quick = {5, 6, 7.5},
+      .full = {6, 7.5, 10, 14},
+      .run = [](std::size_t method, double per_metre) {
+        return run_viscous_dam_break(choices_of(method, per_metre, 20.0));
+      }};
 }
 
 }  // namespace smelt::gravity_current

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double density = 1000.0, case_time = 0.2;
 
-/// Of each method: h over the spacing is 1.2 at every resolution, or grows as spacing^-0.3 from 1.3 at 20 particles a metre.
+/// Of each method: h over the spacing is 1.2 at every resolution, or grows as spacing^-0.3 from 1.3 at 20 particles a
+/// metre.
 double h_over_spacing(std::size_t method, double across) {
   return method == 0 ? 1.2 : 1.3 * std::pow(across / 20.0, 0.3);
 }
@@ -34,7 +35,8 @@ Measurement run_case(std::size_t method, double across) {
     const auto& p = solver.particles();
     measured.n_particles = p.size();
     measured.profile.emplace();
-    for (std::size_t i = 0; i < p.size(); i += 1 + p.size() / 400) measured.profile->computed.add(p.position[i][0], p.temperature[i] - cold);
+    for (std::size_t i = 0; i < p.size(); i += 1 + p.size() / 400)
+      measured.profile->computed.add(p.position[i][0], p.temperature[i] - cold);
   }
   for (double x = -1.0; x <= 1.0; x += 0.02) measured.profile->reference.add(x, exact(x, case_time));
   measured.error = std::sqrt(squares);
@@ -76,20 +78,22 @@ double l2_error(const Solver<2, double>& solver, double time) {
 }
 
 Case make_case() {
-  return {.name = "heat_step",
-          .title = "Heat: a step that spreads",
-          .measures = "The temperature 0.2 s after a step of one kelvin on a jittered lattice, diffusivity 0.1 m^2/s, against the error "
-                      "function: root mean square over four lattices.",
-          .good = "Within 0.1 % of the step; where the number of neighbours grows too it converges faster.",
-          .good_error = 0.001,
-          .error_label = "temperature: L2 error / step",
-          .resolution_label = "particles a metre",
-          .profile_x = "x [m]",
-          .profile_y = "temperature above the cold side [K]",
-          .methods = {"h = 1.2 spacings", "h as spacing^0.7"},
-          .quick = {20, 40, 80},
-          .full = {20, 40, 80, 160},
-          .run = run_case};
+  return {
+      .name = "heat_step",
+      .title = "Heat: a step that spreads",
+      .measures =
+          "The temperature 0.2 s after a step of one kelvin on a jittered lattice, diffusivity 0.1 m^2/s, against the "
+          "error function: root mean square over four lattices.",
+      .good = "Within 0.1 % of the step; where the number of neighbours grows too it converges faster.",
+      .good_error = 0.001,
+      .error_label = "temperature: L2 error / step",
+      .resolution_label = "particles a metre",
+      .profile_x = "x [m]",
+      .profile_y = "temperature above the cold side [K]",
+      .methods = {"h = 1.2 spacings", "h as spacing^0.7"},
+      .quick = {20, 40, 80},
+      .full = {20, 40, 80, 160},
+      .run = run_case};
 }
 
 }  // namespace smelt::heat_step

@@ -61,7 +61,10 @@ Measurement run_case(std::size_t method, double n) {
   const CpuClock clock;
   const Pool pool = method == 2 ? slope_pool(n_deep) : box_pool("box", method == 0 ? 0.0 : 17.0, n_deep);
   const Seen seen = rest(pool, 2.5);
-  return {.error = seen.gauge, .cpu_seconds = clock.seconds(), .n_particles = seen.particles.size(), .profile = profile_of(pool, seen.particles)};
+  return {.error = seen.gauge,
+          .cpu_seconds = clock.seconds(),
+          .n_particles = seen.particles.size(),
+          .profile = profile_of(pool, seen.particles)};
 }
 
 }  // namespace
@@ -145,20 +148,22 @@ Seen rest(const Pool& pool, double duration) {
 }
 
 Case make_case() {
-  return {.name = "hydrostatic_pool",
-          .title = "Hydrostatic pool",
-          .measures = "The pressure that gauges along the wetted walls of a pool at rest show from 2 to 2.5 s, the worst of them, against rho g "
-                      "depth: over a flat floor with corners, in a tilted box, and over a slope of 30 degrees.",
-          .good = "Within 3 % of the pressure at the bottom.",
-          .good_error = 0.03,
-          .error_label = "pressure on walls: largest error / rho g depth",
-          .resolution_label = "particles deep",
-          .profile_x = "height [m]",
-          .profile_y = "pressure of particles [Pa]",
-          .methods = {"flat floor", "tilted by 17 degrees", "slope of 30 degrees"},
-          .quick = {8, 12, 16, 24},
-          .full = {12, 16, 24, 32, 48},
-          .run = run_case};
+  return {
+      .name = "hydrostatic_pool",
+      .title = "Hydrostatic pool",
+      .measures =
+          "The pressure that gauges along the wetted walls of a pool at rest show from 2 to 2.5 s, the worst of them, "
+          "against rho g depth: over a flat floor with corners, in a tilted box, and over a slope of 30 degrees.",
+      .good = "Within 3 % of the pressure at the bottom.",
+      .good_error = 0.03,
+      .error_label = "pressure on walls: largest error / rho g depth",
+      .resolution_label = "particles deep",
+      .profile_x = "height [m]",
+      .profile_y = "pressure of particles [Pa]",
+      .methods = {"flat floor", "tilted by 17 degrees", "slope of 30 degrees"},
+      .quick = {8, 12, 16, 24},
+      .full = {12, 16, 24, 32, 48},
+      .run = run_case};
 }
 
 }  // namespace smelt::hydrostatic_pool

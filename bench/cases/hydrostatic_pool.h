@@ -36,10 +36,10 @@ Pool slope_pool(int n_deep);
 
 /// What a pool at rest should not show; shares of rho g depth, spacings, m/s.
 struct Seen {
-  double gauge = 0.0;     ///< largest error of pressure along the wetted wall, all times after `formed`
-  double particle = 0.0;  ///< of a single particle
-  double speed = 0.0;     ///< fastest particle at the end
-  double drift = 0.0;     ///< root mean square way of the particles
+  double gauge = 0.0;           ///< largest error of pressure along the wetted wall, all times after `formed`
+  double particle = 0.0;        ///< of a single particle
+  double speed = 0.0;           ///< fastest particle at the end
+  double drift = 0.0;           ///< root mean square way of the particles
   Particles<2> particles = {};  ///< at the end
 };
 

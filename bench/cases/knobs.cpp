@@ -32,24 +32,23 @@ using Flow = SolverParameters<2>;
 
 /// The first is what the others are compared with.
 const std::vector<Knob<Flow>>& flow_knobs() {
-  static const std::vector<Knob<Flow>> all{
-      {"CFL 0.4, cubic spline, h = 1.3 spacings", [](Flow&) {}},
-      {"CFL 0.25", [](Flow& p) { p.courant = 0.25; }},
-      {"CFL 0.1", [](Flow& p) { p.courant = 0.1; }},
-      {"h = 1.2 spacings", [](Flow& p) { p.smoothing_length *= 1.2 / 1.3; }},
-      {"h = 1.5 spacings", [](Flow& p) { p.smoothing_length *= 1.5 / 1.3; }},
-      {"quintic spline, h = 1 spacing",
-       [](Flow& p) {
-         p.kernel = KernelType::quintic_spline;
-         p.smoothing_length /= 1.3;
-       }},
-      {"quadratic kernel", [](Flow& p) { p.kernel = KernelType::quadratic; }},
-      {"XSPH 0.3", [](Flow& p) { p.xsph = 0.3; }},
-      {"artificial viscosity 0.2", [](Flow& p) { p.artificial_viscosity = 0.2; }},
-      {"corrected divergence", [](Flow& p) { p.corrected_divergence = true; }},
-      {"no hourglass control", [](Flow& p) { p.hourglass_control = 0.0; }},
-      {"lists reach 0.02 h further", [](Flow& p) { p.skin = 0.02; }},
-      {"lists reach 0.3 h further", [](Flow& p) { p.skin = 0.3; }}};
+  static const std::vector<Knob<Flow>> all{{"CFL 0.4, cubic spline, h = 1.3 spacings", [](Flow&) {}},
+                                           {"CFL 0.25", [](Flow& p) { p.courant = 0.25; }},
+                                           {"CFL 0.1", [](Flow& p) { p.courant = 0.1; }},
+                                           {"h = 1.2 spacings", [](Flow& p) { p.smoothing_length *= 1.2 / 1.3; }},
+                                           {"h = 1.5 spacings", [](Flow& p) { p.smoothing_length *= 1.5 / 1.3; }},
+                                           {"quintic spline, h = 1 spacing",
+                                            [](Flow& p) {
+                                              p.kernel = KernelType::quintic_spline;
+                                              p.smoothing_length /= 1.3;
+                                            }},
+                                           {"quadratic kernel", [](Flow& p) { p.kernel = KernelType::quadratic; }},
+                                           {"XSPH 0.3", [](Flow& p) { p.xsph = 0.3; }},
+                                           {"artificial viscosity 0.2", [](Flow& p) { p.artificial_viscosity = 0.2; }},
+                                           {"corrected divergence", [](Flow& p) { p.corrected_divergence = true; }},
+                                           {"no hourglass control", [](Flow& p) { p.hourglass_control = 0.0; }},
+                                           {"lists reach 0.02 h further", [](Flow& p) { p.skin = 0.02; }},
+                                           {"lists reach 0.3 h further", [](Flow& p) { p.skin = 0.3; }}};
   return all;
 }
 
@@ -87,38 +86,46 @@ Measurement run_surface(std::size_t method, double across) {
   const CpuClock clock;
   const SurfaceMesh surface = build_surface(frame, options);
   const double seconds = clock.seconds();
-  return {.error = surfacing_cases::measure_ball(surface, frame, radius).normals, .cpu_seconds = seconds, .n_particles = frame.size()};
+  return {.error = surfacing_cases::measure_ball(surface, frame, radius).normals,
+          .cpu_seconds = seconds,
+          .n_particles = frame.size()};
 }
 
 }  // namespace
 
 Case make_flow_case() {
-  return {.name = "knobs_flow",
-          .title = "Knobs: a flow",
-          .measures = "What one setting changed costs and buys in the viscoplastic channel (jump number 150): the first line is what the others are "
-                      "compared with.",
-          .good = "Within 2 %, as in the channel's own case; a setting pays where its line lies left of the first or below it.",
-          .good_error = 0.02,
-          .error_label = "velocity: L2 error / L2",
-          .resolution_label = "particles across the channel",
-          .methods = names_of(flow_knobs()),
-          .quick = {20, 30, 40},
-          .full = {20, 30, 40, 60},
-          .run = run_flow};
+  return {
+      .name = "knobs_flow",
+      .title = "Knobs: a flow",
+      .measures =
+          "What one setting changed costs and buys in the viscoplastic channel (jump number 150): the first line is "
+          "what the others are compared with.",
+      .good =
+          "Within 2 %, as in the channel's own case; a setting pays where its line lies left of the first or below it.",
+      .good_error = 0.02,
+      .error_label = "velocity: L2 error / L2",
+      .resolution_label = "particles across the channel",
+      .methods = names_of(flow_knobs()),
+      .quick = {20, 30, 40},
+      .full = {20, 30, 40, 60},
+      .run = run_flow};
 }
 
 Case make_surface_case() {
-  return {.name = "knobs_surface",
-          .title = "Knobs: a surface",
-          .measures = "What one setting changed costs and buys in the normals (root mean square angle) of the surface of a ball of shaken particles.",
-          .good = "Within 0.05 rad (3 degrees).",
-          .good_error = 0.05,
-          .error_label = "normals [rad]",
-          .resolution_label = "particles across the ball",
-          .methods = names_of(surface_knobs()),
-          .quick = {10, 20, 40},
-          .full = {10, 20, 40, 80},
-          .run = run_surface};
+  return {
+      .name = "knobs_surface",
+      .title = "Knobs: a surface",
+      .measures =
+          "What one setting changed costs and buys in the normals (root mean square angle) of the surface of a ball of "
+          "shaken particles.",
+      .good = "Within 0.05 rad (3 degrees).",
+      .good_error = 0.05,
+      .error_label = "normals [rad]",
+      .resolution_label = "particles across the ball",
+      .methods = names_of(surface_knobs()),
+      .quick = {10, 20, 40},
+      .full = {10, 20, 40, 80},
+      .run = run_surface};
 }
 
 }  // namespace smelt::knobs

@@ -16,7 +16,8 @@ namespace {
 constexpr double width = 1e-3, kinematic_viscosity = 1e-6, density = 1000.0, body_force = 1e-4;
 constexpr double peak = body_force * width * width / (8.0 * kinematic_viscosity);  // of the steady velocity [m/s]
 
-/// A channel that repeats, between the two planes: eight spacings long, ten for the quintic spline, which reaches farther.
+/// A channel that repeats, between the two planes: eight spacings long, ten for the quintic spline, which reaches
+/// farther.
 Solver<2, double> make_channel(int across, const Setting& setting) {
   const double spacing = width / across;
   auto parameters = make_parameters<2>(spacing, 10.0 * peak);
@@ -52,7 +53,8 @@ double relative_error(const Particles<2>& p, const Reference& reference, std::si
 }
 
 /// Runs through the times; errors[k] is the one at times[k]. Returns the particles at the last.
-Particles<2> run_through(int across, const Setting& setting, const Reference& reference, std::array<double, times.size()>& errors) {
+Particles<2> run_through(int across, const Setting& setting, const Reference& reference,
+                         std::array<double, times.size()>& errors) {
   Solver<2, double> solver = make_channel(across, setting);
   solver.prepare();
   double time = 0.0;
@@ -64,15 +66,16 @@ Particles<2> run_through(int across, const Setting& setting, const Reference& re
   return solver.particles();
 }
 
-const std::array<Setting, 3> methods{
-    {{}, {.kernel = KernelType::quintic_spline}, {.jitter = 0.2}}};
+const std::array<Setting, 3> methods{{{}, {.kernel = KernelType::quintic_spline}, {.jitter = 0.2}}};
 
 Measurement run_case(std::size_t method, double across) {
   const Reference reference = read_reference("poiseuille_startup");
   std::array<double, times.size()> errors{};
   const CpuClock clock;
   const Particles<2> p = run_through(static_cast<int>(across), methods[method], reference, errors);
-  Measurement measured{.error = *std::max_element(errors.begin(), errors.end()), .cpu_seconds = clock.seconds(), .n_particles = p.size()};
+  Measurement measured{.error = *std::max_element(errors.begin(), errors.end()),
+                       .cpu_seconds = clock.seconds(),
+                       .n_particles = p.size()};
   measured.profile.emplace();
   measured.profile->reference = {reference.column[0], reference.column[times.size()]};
   for (std::size_t i = 0; i < p.size(); ++i) measured.profile->computed.add(p.position[i][1], p.velocity[i][0]);
@@ -90,8 +93,9 @@ std::array<double, times.size()> run_channel(int across, const Setting& setting)
 Case make_case() {
   return {.name = "poiseuille",
           .title = "Start-up of plane Poiseuille flow",
-          .measures = "The velocity between two planes as a Newtonian fluid is set in motion by a body force [Morris 1997], at five times from "
-                      "start to steady flow, the worst of them, against the series.",
+          .measures =
+              "The velocity between two planes as a Newtonian fluid is set in motion by a body force [Morris 1997], at "
+              "five times from start to steady flow, the worst of them, against the series.",
           .good = "Within 1 % on a regular lattice; a jittered one costs up to 2.5 %.",
           .good_error = 0.01,
           .error_label = "velocity: L2 error / L2",

@@ -1,5 +1,6 @@
 #pragma once
-// Start-up of plane Poiseuille flow between two walls [Morris 1997]: width 1 mm, viscosity and density of water, body force 1e-4 m/s^2.
+// Start-up of plane Poiseuille flow between two walls [Morris 1997]: width 1 mm, viscosity and density of water, body
+// force 1e-4 m/s^2.
 
 #include "bench/cases/case.h"
 #include "core/sph/kernel.h"
@@ -17,8 +18,8 @@ struct Setting {
   KernelType kernel = KernelType::cubic_spline;
 };
 
-/// sqrt(sum e^2 / sum u^2) over the particles at each of the times, e what a velocity along the channel is off; `across` particles from
-/// plane to plane.
+/// sqrt(sum e^2 / sum u^2) over the particles at each of the times, e what a velocity along the channel is off;
+/// `across` particles from plane to plane.
 std::array<double, times.size()> run_channel(int across, const Setting& setting);
 
 Case make_case();

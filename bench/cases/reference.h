@@ -16,8 +16,8 @@ struct Reference {
   double at(double x, std::size_t c = 1) const;
 };
 
-/// Reads `name`.csv of bench/reference, where this program was built. Throws Error (file:line) where it cannot be read or a row has another
-/// length.
+/// Reads `name`.csv of bench/reference, where this program was built. Throws Error (file:line) where it cannot be read
+/// or a row has another length.
 Reference read_reference(const std::string& name);
 
 }  // namespace smelt

@@ -18,7 +18,9 @@ Measurement turn(double n) {
   solver.prepare();
   const double before = angular_velocity<Dim>(solver);
   advance_by(solver, 2.0 * std::numbers::pi / rate_of(radius));
-  return {.error = std::abs(angular_velocity<Dim>(solver) / before - 1.0), .cpu_seconds = clock.seconds(), .n_particles = solver.particles().size()};
+  return {.error = std::abs(angular_velocity<Dim>(solver) / before - 1.0),
+          .cpu_seconds = clock.seconds(),
+          .n_particles = solver.particles().size()};
 }
 
 }  // namespace
@@ -26,8 +28,9 @@ Measurement turn(double n) {
 Case make_case() {
   return {.name = "rigid_rotation",
           .title = "A free body that spins",
-          .measures = "What a stiff disc and a stiff ball (jump number 1000) lose of their angular velocity in one turn; they should keep all of"
-                      " it.",
+          .measures =
+              "What a stiff disc and a stiff ball (jump number 1000) lose of their angular velocity in one turn; they "
+              "should keep all of it.",
           .good = "Within 1 %.",
           .good_error = 0.01,
           .error_label = "|angular velocity / start - 1|",

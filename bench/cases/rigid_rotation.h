@@ -54,7 +54,8 @@ inline double rate_of(double radius) {
 /// The particles with the relaxed stress, spinning at that rate.
 template <int Dim>
 Solver<Dim, double> make_spinning(Particles<Dim> particles, double radius) {
-  for (std::size_t i = 0; i < particles.size(); ++i) particles.velocity[i] = spin_velocity<Dim>(particles.position[i], rate_of(radius));
+  for (std::size_t i = 0; i < particles.size(); ++i)
+    particles.velocity[i] = spin_velocity<Dim>(particles.position[i], rate_of(radius));
   auto parameters = make_parameters<Dim>(spacing, sound_speed);
   parameters.shear_wave_speed = sound_speed;
   parameters.artificial_viscosity = 0.1;

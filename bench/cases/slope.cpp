@@ -68,7 +68,9 @@ Measurement run_case(std::size_t method, double n) {
   const int n_rows = static_cast<int>(n);
   const CpuClock clock;
   const double speed = run_layer(n_rows, ratio, method == 0 ? 3.0 : 5.0);
-  return {.error = std::abs(speed / exact - 1.0), .cpu_seconds = clock.seconds(), .n_particles = static_cast<std::size_t>(8 * n_rows)};
+  return {.error = std::abs(speed / exact - 1.0),
+          .cpu_seconds = clock.seconds(),
+          .n_particles = static_cast<std::size_t>(8 * n_rows)};
 }
 
 }  // namespace
@@ -102,19 +104,22 @@ double run_layer(int n_rows, double ratio, double end, double h_over_spacing) {
 }
 
 Case make_case() {
-  return {.name = "slope",
-          .title = "Viscoplastic layer on a slope",
-          .measures = "The speed of the surface of a nearly Bingham layer just and well above the thickness at which it starts to flow, against "
-                      "the flow curve's integral.",
-          .good = "Within 10 % just above the critical thickness, where a change of 1 % in thickness changes the speed by 40 %, and 2 % well "
-                  "above.",
-          .good_error = 0.1,
-          .error_label = "|speed of the surface / exact - 1|",
-          .resolution_label = "rows of particles",
-          .methods = {"1.05 of the critical thickness", "1.5 of the critical thickness"},
-          .quick = {24, 32, 40},
-          .full = {24, 32, 40, 60, 80},
-          .run = run_case};
+  return {
+      .name = "slope",
+      .title = "Viscoplastic layer on a slope",
+      .measures =
+          "The speed of the surface of a nearly Bingham layer just and well above the thickness at which it starts to "
+          "flow, against the flow curve's integral.",
+      .good =
+          "Within 10 % just above the critical thickness, where a change of 1 % in thickness changes the speed by 40 "
+          "%, and 2 % well above.",
+      .good_error = 0.1,
+      .error_label = "|speed of the surface / exact - 1|",
+      .resolution_label = "rows of particles",
+      .methods = {"1.05 of the critical thickness", "1.5 of the critical thickness"},
+      .quick = {24, 32, 40},
+      .full = {24, 32, 40, 60, 80},
+      .run = run_case};
 }
 
 }  // namespace smelt::slope

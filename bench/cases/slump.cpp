@@ -59,7 +59,8 @@ Slumped simulate_slump(double relative_yield, int n) {
   Box<3> box;
   box.lower = Vec3(-0.5 * height, 0.0, -0.5 * height);
   box.upper = Vec3(0.5 * height, height, 0.5 * height);
-  Particles<3> particles = make_lattice<3>(box, spacing, density, 0.0, [](const Vec3& x) { return std::hypot(x[0], x[2]) <= 0.5 * height; });
+  Particles<3> particles =
+      make_lattice<3>(box, spacing, density, 0.0, [](const Vec3& x) { return std::hypot(x[0], x[2]) <= 0.5 * height; });
   auto parameters = make_parameters<3>(spacing, sound_speed);
   parameters.gravity = Vec3(0.0, -gravity, 0.0);
   parameters.shear_wave_speed = sound_speed;
@@ -76,18 +77,20 @@ Slumped simulate_slump(double relative_yield, int n) {
 }
 
 Case make_case() {
-  return {.name = "slump",
-          .title = "Slump of a Bingham cylinder",
-          .measures = "How far a cylinder of clay as wide as tall has sunk after three seconds, against the formula of Pashias et al. (1996), "
-                      "for three yield stresses.",
-          .good = "Within 10 %, as good as the formula itself.",
-          .good_error = 0.1,
-          .error_label = "|slump / formula - 1|",
-          .resolution_label = "particles high",
-          .methods = {"yield stress 0.1 rho g H", "0.2 rho g H", "0.3 rho g H"},
-          .quick = {8, 10, 12},
-          .full = {8, 12, 16, 20},
-          .run = run_case};
+  return {
+      .name = "slump",
+      .title = "Slump of a Bingham cylinder",
+      .measures =
+          "How far a cylinder of clay as wide as tall has sunk after three seconds, against the formula of Pashias et "
+          "al. (1996), for three yield stresses.",
+      .good = "Within 10 %, as good as the formula itself.",
+      .good_error = 0.1,
+      .error_label = "|slump / formula - 1|",
+      .resolution_label = "particles high",
+      .methods = {"yield stress 0.1 rho g H", "0.2 rho g H", "0.3 rho g H"},
+      .quick = {8, 10, 12},
+      .full = {8, 12, 16, 20},
+      .run = run_case};
 }
 
 }  // namespace smelt::slump

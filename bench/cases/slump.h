@@ -11,9 +11,9 @@ struct Slumped {
   Particles<3> particles;  ///< at the end
 };
 
-/// A cylinder 0.3 m high as wide as tall, `n` particles high, whose yield stress is `relative_yield` rho g H, after three seconds. The
-/// formula is a balance at rest, so the consistency is high enough for inertia not to carry the column past it: 60 Pa s, with which
-/// the wide slump takes half a second.
+/// A cylinder 0.3 m high as wide as tall, `n` particles high, whose yield stress is `relative_yield` rho g H, after
+/// three seconds. The formula is a balance at rest, so the consistency is high enough for inertia not to carry the
+/// column past it: 60 Pa s, with which the wide slump takes half a second.
 Slumped simulate_slump(double relative_yield, int n);
 
 Case make_case();

@@ -96,20 +96,22 @@ Errors measure(const Particles<2>& p, const Reference& reference, int across) {
 }
 
 Case make_case() {
-  return {.name = "channel",
-          .title = "Viscoplastic channel",
-          .measures = "The velocity across a plane channel of the Souza Mendes-Dutra fluid whose walls bear two yield stresses, from rest until "
-                      "it is steady, against quadrature, for three jump numbers.",
-          .good = "Within 2 %: the plug is then as wide as it should be to a fraction of a spacing.",
-          .good_error = 0.02,
-          .error_label = "velocity: L2 error / L2",
-          .resolution_label = "particles across the channel",
-          .profile_x = "distance from the middle / half width",
-          .profile_y = "velocity [-]",
-          .methods = {"J = 15", "J = 150", "J = 1500"},
-          .quick = {10, 20, 40, 60},
-          .full = {20, 40, 60, 80, 120},
-          .run = run_case};
+  return {
+      .name = "channel",
+      .title = "Viscoplastic channel",
+      .measures =
+          "The velocity across a plane channel of the Souza Mendes-Dutra fluid whose walls bear two yield stresses, "
+          "from rest until it is steady, against quadrature, for three jump numbers.",
+      .good = "Within 2 %: the plug is then as wide as it should be to a fraction of a spacing.",
+      .good_error = 0.02,
+      .error_label = "velocity: L2 error / L2",
+      .resolution_label = "particles across the channel",
+      .profile_x = "distance from the middle / half width",
+      .profile_y = "velocity [-]",
+      .methods = {"J = 15", "J = 150", "J = 1500"},
+      .quick = {10, 20, 40, 60},
+      .full = {20, 40, 60, 80, 120},
+      .run = run_case};
 }
 
 }  // namespace smelt::smd_channel

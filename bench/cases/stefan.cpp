@@ -97,8 +97,10 @@ double farthest_front(double stefan_number) {
 Case make_case() {
   return {.name = "stefan",
           .title = "Stefan: a melting front",
-          .measures = "How far a solid at its melting point has melted from a hot wall, the worst over the times at which a quarter to two "
-                      "thirds of it is liquid, against Neumann's similarity solution, for three Stefan numbers (sensible over latent heat).",
+          .measures =
+              "How far a solid at its melting point has melted from a hot wall, the worst over the times at which a "
+              "quarter to two thirds of it is liquid, against Neumann's similarity solution, for three Stefan numbers "
+              "(sensible over latent heat).",
           .good = "Within 2 % of the front's height: a row of particles melts at a time.",
           .good_error = 0.02,
           .error_label = "front: largest |height / exact - 1|",

@@ -5,8 +5,9 @@
 
 namespace smelt::stefan {
 
-/// A column 1 m high, melting from below. The error is the largest of the front's height relative to the exact one over the reference's
-/// times with a front from a quarter to `farthest` of the column; the profile is the front [m] over time [s].
+/// A column 1 m high, melting from below. The error is the largest of the front's height relative to the exact one over
+/// the reference's times with a front from a quarter to `farthest` of the column; the profile is the front [m] over
+/// time [s].
 Measurement measure_front(double spacing, double stefan_number, double jitter, double farthest);
 
 /// As far up as the top has not felt the melting yet: a share of the column.

@@ -23,8 +23,9 @@ struct Method {
   bool anisotropic;
   Quantity quantity;
 };
-constexpr std::array sphere_methods{Method{true, Quantity::volume},  Method{true, Quantity::distance},  Method{true, Quantity::normals},
-                                    Method{false, Quantity::volume}, Method{false, Quantity::distance}, Method{false, Quantity::normals}};
+constexpr std::array sphere_methods{Method{true, Quantity::volume},    Method{true, Quantity::distance},
+                                    Method{true, Quantity::normals},   Method{false, Quantity::volume},
+                                    Method{false, Quantity::distance}, Method{false, Quantity::normals}};
 
 Measurement run_sphere(std::size_t method, double across) {
   const auto [anisotropic, quantity] = sphere_methods[method];
@@ -41,8 +42,8 @@ Measurement run_sphere(std::size_t method, double across) {
           .n_particles = frame.size()};
 }
 
-constexpr std::array bunny_methods{Method{true, Quantity::volume}, Method{true, Quantity::distance}, Method{false, Quantity::volume},
-                                   Method{false, Quantity::distance}};
+constexpr std::array bunny_methods{Method{true, Quantity::volume}, Method{true, Quantity::distance},
+                                   Method{false, Quantity::volume}, Method{false, Quantity::distance}};
 
 Measurement run_bunny(std::size_t method, double across) {
   const auto [anisotropic, quantity] = bunny_methods[method];
@@ -59,7 +60,8 @@ Measurement run_bunny(std::size_t method, double across) {
     measured.error = std::abs(compute_volume(surface.mesh) / seeds.volume - 1.0);
   } else {
     const double limit = 8.0 * seeds.spacing;
-    measured.error = std::max(distances(surface.mesh, bunny, limit).largest, distances(bunny, surface.mesh, limit).largest) / height;
+    measured.error =
+        std::max(distances(surface.mesh, bunny, limit).largest, distances(bunny, surface.mesh, limit).largest) / height;
   }
   return measured;
 }
@@ -138,34 +140,39 @@ Distances distances(const TriangleMesh& from, const TriangleMesh& to, double lim
 }
 
 Case make_sphere_case() {
-  return {.name = "surface_sphere",
-          .title = "Surface of a ball of particles",
-          .measures = "What the surface of a ball of shaken particles (0.1 spacings) is off in volume, in the farthest distance from the sphere "
-                      "over the radius, and in its normals (root mean square angle), with kernels that are flattened at the surface and with "
-                      "round ones.",
-          .good = "Volume within 0.5 %, distance within 1 %, normals within 0.05 rad (3 degrees), 27 particles across.",
-          .good_error = 0.01,
-          .error_label = "error, relative or rad",
-          .resolution_label = "particles across the ball",
-          .methods = {"volume", "distance", "normals", "volume, round", "distance, round", "normals, round"},
-          .quick = {10, 20, 40},
-          .full = {10, 20, 40, 80},
-          .run = run_sphere};
+  return {
+      .name = "surface_sphere",
+      .title = "Surface of a ball of particles",
+      .measures =
+          "What the surface of a ball of shaken particles (0.1 spacings) is off in volume, in the farthest distance "
+          "from the sphere over the radius, and in its normals (root mean square angle), with kernels that are "
+          "flattened at the surface and with round ones.",
+      .good = "Volume within 0.5 %, distance within 1 %, normals within 0.05 rad (3 degrees), 27 particles across.",
+      .good_error = 0.01,
+      .error_label = "error, relative or rad",
+      .resolution_label = "particles across the ball",
+      .methods = {"volume", "distance", "normals", "volume, round", "distance, round", "normals, round"},
+      .quick = {10, 20, 40},
+      .full = {10, 20, 40, 80},
+      .run = run_sphere};
 }
 
 Case make_bunny_case() {
-  return {.name = "surface_bunny",
-          .title = "Surface of the bunny's particles",
-          .measures = "What the surface of the particles that fill the Stanford bunny is off its mesh: in volume, and in Hausdorff's distance "
-                      "over the bunny's height, with kernels that are flattened at the surface and with round ones.",
-          .good = "Volume within 1 %, distance within a spacing of the particles: 2.5 % of the height at 40.",
-          .good_error = 0.01,
-          .error_label = "error, relative",
-          .resolution_label = "particles in the height",
-          .methods = {"volume", "distance", "volume, round", "distance, round"},
-          .quick = {20, 30, 40},
-          .full = {20, 30, 40, 60, 80},
-          .run = run_bunny};
+  return {
+      .name = "surface_bunny",
+      .title = "Surface of the bunny's particles",
+      .measures =
+          "What the surface of the particles that fill the Stanford bunny is off its mesh: in volume, and in "
+          "Hausdorff's distance over the bunny's height, with kernels that are flattened at the surface and with round "
+          "ones.",
+      .good = "Volume within 1 %, distance within a spacing of the particles: 2.5 % of the height at 40.",
+      .good_error = 0.01,
+      .error_label = "error, relative",
+      .resolution_label = "particles in the height",
+      .methods = {"volume", "distance", "volume, round", "distance, round"},
+      .quick = {20, 30, 40},
+      .full = {20, 30, 40, 60, 80},
+      .run = run_bunny};
 }
 
 }  // namespace smelt::surfacing_cases

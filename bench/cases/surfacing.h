@@ -30,8 +30,8 @@ struct BallErrors {
 };
 BallErrors measure_ball(const SurfaceMesh& surface, const ParticleFrame& frame, double radius);
 
-/// Distances [m] from the vertices and the middles of the faces of a mesh to another, none taken for more than `limit` [m]; the mean is weighted
-/// with area.
+/// Distances [m] from the vertices and the middles of the faces of a mesh to another, none taken for more than `limit`
+/// [m]; the mean is weighted with area.
 struct Distances {
   double largest = 0.0, mean = 0.0;
 };

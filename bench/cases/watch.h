@@ -15,8 +15,8 @@ inline double compression_energy(PressureLaw law, double c, double s) {
   return c * c * (std::log(s) + 1.0 / s - 1.0);
 }
 
-/// Kinetic energy, -sum m g.x, compression and, where the stress is relaxed, its spring V S:S/(4 G) [J]: what no term of
-/// the method may add to.
+/// Kinetic energy, -sum m g.x, compression and, where the stress is relaxed, its spring V S:S/(4 G) [J]: what no term
+/// of the method may add to.
 template <int Dim, typename Real>
 double total_energy(const Solver<Dim, Real>& solver) {
   const Particles<Dim>& p = solver.particles();
@@ -50,7 +50,8 @@ struct Watched {
   double time = 0.0;  ///< [s] that passed
 };
 
-/// Advances a scene from rest density for `duration` [s], or `most_steps`. The solver itself throws where something is not finite.
+/// Advances a scene from rest density for `duration` [s], or `most_steps`. The solver itself throws where something is
+/// not finite.
 template <int Dim, typename Real>
 Watched watch(Solver<Dim, Real>& solver, double duration, int most_steps = std::numeric_limits<int>::max()) {
   Watched seen;

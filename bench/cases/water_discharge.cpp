@@ -55,7 +55,9 @@ void observe(const Particles<2>& p, double level, double sinking, Jet& jet) {
 Measurement run_case(std::size_t, double n_across) {
   const CpuClock clock;
   const Jet jet = discharge(static_cast<int>(n_across));
-  Measurement measured{.error = std::abs(jet.speed / jet.torricelli - 1.0), .cpu_seconds = clock.seconds(), .n_particles = jet.particles.size()};
+  Measurement measured{.error = std::abs(jet.speed / jet.torricelli - 1.0),
+                       .cpu_seconds = clock.seconds(),
+                       .n_particles = jet.particles.size()};
   measured.picture = draw_speeds(jet.particles, "The vessel after 0.3 s: the jet leaves to the right.");
   return measured;
 }
@@ -85,17 +87,19 @@ Jet discharge(int n_across) {
 }
 
 Case make_case() {
-  return {.name = "water_discharge",
-          .title = "Water discharge",
-          .measures = "The speed of the jet that runs out of a vessel at its floor, mean from 0.2 to 0.3 s, against Torricelli's.",
-          .good = "Within 5 %; with the text's 24 particles across, eight across the opening.",
-          .good_error = 0.05,
-          .error_label = "|speed of the jet / Torricelli's - 1|",
-          .resolution_label = "particles across the vessel",
-          .methods = {"continuity density"},
-          .quick = {18, 24, 36},
-          .full = {18, 24, 36, 48, 72},
-          .run = run_case};
+  return {
+      .name = "water_discharge",
+      .title = "Water discharge",
+      .measures =
+          "The speed of the jet that runs out of a vessel at its floor, mean from 0.2 to 0.3 s, against Torricelli's.",
+      .good = "Within 5 %; with the text's 24 particles across, eight across the opening.",
+      .good_error = 0.05,
+      .error_label = "|speed of the jet / Torricelli's - 1|",
+      .resolution_label = "particles across the vessel",
+      .methods = {"continuity density"},
+      .quick = {18, 24, 36},
+      .full = {18, 24, 36, 48, 72},
+      .run = run_case};
 }
 
 }  // namespace smelt::water_discharge

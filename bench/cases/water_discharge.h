@@ -1,8 +1,8 @@
 #pragma once
 // Water discharge [S 4.5.3.2]: a column L x 2L of 1152 particles runs out of its vessel, against Torricelli.
 //
-// The text's figure of the vessel is lost: here the opening is L/3 high, eight of [S]'s particles, in the side at the floor (L/4, six of
-// them, leaves four across the jet, two of which are its edges: 6.9 % off). Its lips are sharp,
+// The text's figure of the vessel is lost: here the opening is L/3 high, eight of [S]'s particles, in the side at the
+// floor (L/4, six of them, leaves four across the jet, two of which are its edges: 6.9 % off). Its lips are sharp,
 // so that the jet is free on either side, and past its narrowing the pressure is nought: with h the level and V =
 // -dh/dt,
 //   v^2 = 2 g (h - y) + V^2  (Bernoulli from the surface to a particle at height y).

@@ -15,7 +15,8 @@ std::string quoted(const std::string& text) {
 }
 
 void append_curve(std::string& out, const std::string& begin, const char* series, const Curve& curve) {
-  for (std::size_t i = 0; i < curve.x.size(); ++i) fmt::format_to(std::back_inserter(out), "{},{},{},{}\n", begin, series, curve.x[i], curve.y[i]);
+  for (std::size_t i = 0; i < curve.x.size(); ++i)
+    fmt::format_to(std::back_inserter(out), "{},{},{},{}\n", begin, series, curve.x[i], curve.y[i]);
 }
 
 }  // namespace
@@ -23,8 +24,8 @@ void append_curve(std::string& out, const std::string& begin, const char* series
 std::vector<RunRow> to_rows(const CaseResult& result) {
   std::vector<RunRow> rows;
   for (const Run& run : result.runs)
-    rows.push_back({result.problem.name, result.problem.methods[run.method], run.resolution, run.measured.n_particles, run.measured.error,
-                    run.measured.cpu_seconds, run.failure});
+    rows.push_back({result.problem.name, result.problem.methods[run.method], run.resolution, run.measured.n_particles,
+                    run.measured.error, run.measured.cpu_seconds, run.failure});
   return rows;
 }
 

@@ -27,13 +27,20 @@ std::string quoted(const std::string& text) {
 std::string style_of(const Series& series) {
   const char* colour = palette[series.colour % palette.size()];
   switch (series.look) {
-    case Series::Look::line: return fmt::format("with lines lw 2 lc rgb '{}'", colour);
-    case Series::Look::points: return fmt::format("with points pt 7 ps 0.8 lc rgb '{}'", colour);
-    case Series::Look::small_points: return fmt::format("with points pt 7 ps 0.35 lc rgb '{}'", colour);
-    case Series::Look::line_and_points: return fmt::format("with linespoints lw 2 pt 7 ps 0.8 lc rgb '{}'", colour);
-    case Series::Look::squares: return fmt::format("with points pt 5 ps 1.6 lc rgb '{}'", colour);
-    case Series::Look::reference: return "with lines lw 1.5 lc rgb '#222222'";
-    case Series::Look::dashes: return fmt::format("with lines lw 1 dt 2 lc rgb '{}'", colour);
+    case Series::Look::line:
+      return fmt::format("with lines lw 2 lc rgb '{}'", colour);
+    case Series::Look::points:
+      return fmt::format("with points pt 7 ps 0.8 lc rgb '{}'", colour);
+    case Series::Look::small_points:
+      return fmt::format("with points pt 7 ps 0.35 lc rgb '{}'", colour);
+    case Series::Look::line_and_points:
+      return fmt::format("with linespoints lw 2 pt 7 ps 0.8 lc rgb '{}'", colour);
+    case Series::Look::squares:
+      return fmt::format("with points pt 5 ps 1.6 lc rgb '{}'", colour);
+    case Series::Look::reference:
+      return "with lines lw 1.5 lc rgb '#222222'";
+    case Series::Look::dashes:
+      return fmt::format("with lines lw 1 dt 2 lc rgb '{}'", colour);
   }
   throw InternalError("style_of: unknown look");
 }
@@ -80,7 +87,8 @@ struct Script {
     if (rows.empty()) return;
     const std::string name = fmt::format("$d{}", n_series++);
     data += fmt::format("{} << EOD\n{}EOD\n", name, rows);
-    add_plot(fmt::format("{} {} {}", name, style_of(series), series.label.empty() ? "notitle" : "title " + quoted(series.label)));
+    add_plot(fmt::format("{} {} {}", name, style_of(series),
+                         series.label.empty() ? "notitle" : "title " + quoted(series.label)));
   }
 
   void add_plot(const std::string& command) { plots += (plots.empty() ? "plot " : ", ") + command; }
@@ -93,8 +101,8 @@ std::vector<double> digits_for(double span) {
   return {1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 7.0};
 }
 
-/// Range and tics of an axis, a third beyond the data on either side: gnuplot's own tics stand at whole decades, of which the data may span less
-/// than one.
+/// Range and tics of an axis, a third beyond the data on either side: gnuplot's own tics stand at whole decades, of
+/// which the data may span less than one.
 std::string logarithmic_axis(char axis, const Range& range) {
   const double low = range.low / 1.33, high = range.high * 1.33;
   std::string tics;
@@ -125,7 +133,9 @@ std::string run_script(std::string script, const std::string& name, const std::f
 
 void check_gnuplot() {
   if (run_program({"gnuplot", "--version"}) != 0)
-    fail("the report's plots need gnuplot, and it cannot be started: `./smelt report` installs it, or install the package gnuplot-nox");
+    fail(
+        "the report's plots need gnuplot, and it cannot be started: `./smelt report` installs it, or install the "
+        "package gnuplot-nox");
 }
 
 std::string draw_plot(const Plot& plot, const std::string& name, const std::filesystem::path& folder) {
@@ -136,7 +146,8 @@ std::string draw_plot(const Plot& plot, const std::string& name, const std::file
     script.y.add(*plot.level);
     script.add_plot(fmt::format("{:.6g} with lines lw 1 dt 3 lc rgb '#555555' title 'a good number'", *plot.level));
   }
-  std::string settings = head(name, 520, 400) + labels(plot.x_label, plot.y_label) + "set key outside above Left reverse horizontal samplen 2\n";
+  std::string settings = head(name, 520, 400) + labels(plot.x_label, plot.y_label) +
+                         "set key outside above Left reverse horizontal samplen 2\n";
   if (plot.logarithmic)
     settings += "set logscale xy\n" + logarithmic_axis('x', script.x) + logarithmic_axis('y', script.y);
   else
@@ -146,8 +157,10 @@ std::string draw_plot(const Plot& plot, const std::string& name, const std::file
 
 std::string draw_picture(const Picture& picture, const std::string& name, const std::filesystem::path& folder) {
   std::string script = head(name, 720, 400) + labels(picture.x_label, picture.y_label);
-  script += fmt::format("set size ratio -1\nset palette defined (0 '#2b4b9b', 0.5 '#5fb3a1', 1 '#f2c84b')\nset cblabel {}\nunset key\n$d << EOD\n",
-                        quoted(picture.value_label));
+  script += fmt::format(
+      "set size ratio -1\nset palette defined (0 '#2b4b9b', 0.5 '#5fb3a1', 1 '#f2c84b')\nset cblabel {}\nunset key\n$d "
+      "<< EOD\n",
+      quoted(picture.value_label));
   for (std::size_t i = 0; i < picture.x.size(); ++i)
     fmt::format_to(std::back_inserter(script), "{:.5g} {:.5g} {:.4g}\n", picture.x[i], picture.y[i], picture.value[i]);
   return run_script(script + "EOD\nplot $d with points pt 7 ps 0.4 lc palette\n", name, folder);

@@ -29,8 +29,8 @@ struct Plot {
 /// Throws Error where gnuplot cannot be started.
 void check_gnuplot();
 
-/// The plot as an `<svg>` element to stand in a page. `name` makes its ids unique there. gnuplot's script stands in `folder` while it runs, and
-/// stays where gnuplot fails, which throws Error.
+/// The plot as an `<svg>` element to stand in a page. `name` makes its ids unique there. gnuplot's script stands in
+/// `folder` while it runs, and stays where gnuplot fails, which throws Error.
 std::string draw_plot(const Plot& plot, const std::string& name, const std::filesystem::path& folder);
 
 /// The same for a picture, its axes to one scale.

@@ -17,7 +17,8 @@ namespace {
 /// A queue of jobs that several threads work through.
 class Jobs {
  public:
-  Jobs(std::size_t n, Progress& progress, const std::function<void(std::size_t)>& job, const std::function<void(std::size_t)>& finished)
+  Jobs(std::size_t n, Progress& progress, const std::function<void(std::size_t)>& job,
+       const std::function<void(std::size_t)>& finished)
       : n_(n), progress_(progress), job_(job), finished_(finished) {}
 
   void work() {

@@ -51,7 +51,9 @@ Plot cost_plot(const CaseResult& result) {
   const Case& problem = result.problem;
   Plot plot{"CPU seconds", problem.error_label, true, {}, problem.good_error};
   for (std::size_t m = 0; m < problem.methods.size(); ++m)
-    plot.series.push_back({problem.methods[m], collect(result.runs, m, [](const Run& run) { return run.measured.cpu_seconds; }, error_of),
+    plot.series.push_back({problem.methods[m],
+                           collect(
+                               result.runs, m, [](const Run& run) { return run.measured.cpu_seconds; }, error_of),
                            Series::Look::line_and_points, m});
   return plot;
 }
@@ -73,7 +75,8 @@ Plot convergence_plot(const CaseResult& result) {
   const Case& problem = result.problem;
   Plot plot{problem.resolution_label, problem.error_label, true, {}, problem.good_error};
   for (std::size_t m = 0; m < problem.methods.size(); ++m) {
-    const Curve curve = collect(result.runs, m, [](const Run& run) { return run.resolution; }, error_of);
+    const Curve curve = collect(
+        result.runs, m, [](const Run& run) { return run.resolution; }, error_of);
     const auto order = fitted_order(result.runs, m);
     const std::string label = problem.methods[m] + (order ? fmt::format(", order {:.2f}", *order) : "");
     plot.series.push_back({label, curve, Series::Look::points, m});
@@ -114,12 +117,15 @@ std::string write_figures(const CaseResult& result, const std::filesystem::path&
   std::string out = "<div class=\"plots\">\n";
   out += write_figure(draw_plot(cost_plot(result), problem.name + "_cost", folder),
                       "Error against CPU seconds of one thread; a point for each resolution.");
-  out += write_figure(draw_plot(convergence_plot(result), problem.name + "_convergence", folder), "Error against resolution, with the fitted order.");
+  out += write_figure(draw_plot(convergence_plot(result), problem.name + "_convergence", folder),
+                      "Error against resolution, with the fitted order.");
   const Plot profile = profile_plot(result);
   if (!profile.series.empty())
-    out += write_figure(draw_plot(profile, problem.name + "_profile", folder), "The finest run of each method (points) beside the reference (line).");
+    out += write_figure(draw_plot(profile, problem.name + "_profile", folder),
+                        "The finest run of each method (points) beside the reference (line).");
   if (const Run* run = finest(result.runs, 0, [](const Measurement& measured) { return measured.picture.has_value(); }))
-    out += write_figure(draw_picture(*run->measured.picture, problem.name + "_picture", folder), run->measured.picture->caption);
+    out += write_figure(draw_picture(*run->measured.picture, problem.name + "_picture", folder),
+                        run->measured.picture->caption);
   return out + "</div>\n";
 }
 
@@ -128,31 +134,35 @@ std::string write_summary(const CaseResult& result) {
   const Case& problem = result.problem;
   std::string out;
   for (std::size_t m = 0; m < problem.methods.size(); ++m) {
-    out += fmt::format("<tr><td><a href=\"#{}\">{}</a></td><td>{}</td>", problem.name, escape_html(problem.title), escape_html(problem.methods[m]));
+    out += fmt::format("<tr><td><a href=\"#{}\">{}</a></td><td>{}</td>", problem.name, escape_html(problem.title),
+                       escape_html(problem.methods[m]));
     const Run* run = finest(result.runs, m, [](const Measurement&) { return true; });
     if (run == nullptr) {
       out += "<td class=\"failed\" colspan=\"6\">failed</td></tr>\n";
       continue;
     }
     const auto order = fitted_order(result.runs, m);
-    out += fmt::format("<td>{:g}</td><td>{:.3g}</td><td>{:g}</td><td>{}</td><td>{}</td><td>{:.2f}</td></tr>\n", run->resolution, run->measured.error,
-                       problem.good_error, run->measured.error <= problem.good_error ? "yes" : "no", order ? fmt::format("{:.2f}", *order) : "",
-                       run->measured.cpu_seconds);
+    out += fmt::format("<td>{:g}</td><td>{:.3g}</td><td>{:g}</td><td>{}</td><td>{}</td><td>{:.2f}</td></tr>\n",
+                       run->resolution, run->measured.error, problem.good_error,
+                       run->measured.error <= problem.good_error ? "yes" : "no",
+                       order ? fmt::format("{:.2f}", *order) : "", run->measured.cpu_seconds);
   }
   return out;
 }
 
 std::string write_table(const CaseResult& result) {
   const Case& problem = result.problem;
-  std::string out = fmt::format("<table><tr><th>method</th><th>{}</th><th>particles</th><th>{}</th><th>CPU seconds</th></tr>\n",
-                                escape_html(problem.resolution_label), escape_html(problem.error_label));
+  std::string out =
+      fmt::format("<table><tr><th>method</th><th>{}</th><th>particles</th><th>{}</th><th>CPU seconds</th></tr>\n",
+                  escape_html(problem.resolution_label), escape_html(problem.error_label));
   for (const Run& run : result.runs) {
     out += fmt::format("<tr><td>{}</td><td>{:g}</td>", escape_html(problem.methods[run.method]), run.resolution);
     if (run.failed())
       out += fmt::format("<td class=\"failed\" colspan=\"3\">failed: {}</td></tr>\n", escape_html(run.failure));
     else
       out += fmt::format("<td>{}</td><td>{:.3g}</td><td>{:.2f}</td></tr>\n",
-                         run.measured.n_particles > 0 ? fmt::to_string(run.measured.n_particles) : "", run.measured.error, run.measured.cpu_seconds);
+                         run.measured.n_particles > 0 ? fmt::to_string(run.measured.n_particles) : "",
+                         run.measured.error, run.measured.cpu_seconds);
   }
   return out + "</table>\n";
 }
@@ -180,7 +190,8 @@ std::string describe_now() {
 }
 
 std::optional<double> fitted_order(const std::vector<Run>& runs, std::size_t method) {
-  const Curve curve = collect(runs, method, [](const Run& run) { return 1.0 / run.resolution; }, error_of);
+  const Curve curve = collect(
+      runs, method, [](const Run& run) { return 1.0 / run.resolution; }, error_of);
   if (curve.x.size() < 2) return std::nullopt;
   for (const double error : curve.y)
     if (!(error > 0.0) || !std::isfinite(error)) return std::nullopt;
@@ -189,28 +200,33 @@ std::optional<double> fitted_order(const std::vector<Run>& runs, std::size_t met
 
 Section write_case_section(const CaseResult& result, bool quick, const std::filesystem::path& folder) {
   const Case& problem = result.problem;
-  std::string out = fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<p>{} {}</p>\n", problem.name, escape_html(problem.title),
-                                escape_html(problem.measures), escape_html(problem.good));
+  std::string out = fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n<p>{} {}</p>\n", problem.name,
+                                escape_html(problem.title), escape_html(problem.measures), escape_html(problem.good));
   if (result.failed()) out += "<p class=\"failed\">Some of its runs failed: see the table.</p>\n";
   out += write_figures(result, folder) + write_table(result);
-  out += fmt::format("<p>To repeat it: <code>./smelt report {}{}</code></p>\n</section>\n", problem.name, quick ? " --quick" : "");
+  out += fmt::format("<p>To repeat it: <code>./smelt report {}{}</code></p>\n</section>\n", problem.name,
+                     quick ? " --quick" : "");
   return {write_summary(result), out};
 }
 
 std::string write_page(const PageHead& head, const std::vector<Section>& sections, std::size_t n_expected) {
   std::string out = fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>smelt: speed against error</title><style>{}</style></head><body>\n"
-      "<h1>smelt: speed against error</h1>\n"
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>smelt: speed against "
+      "error</title><style>{}</style></head><body>\n<h1>smelt: speed against error</h1>\n"
       "<table><tr><td>machine</td><td>{}</td></tr><tr><td>smelt</td><td>{}</td></tr><tr><td>date</td><td>{}</td></tr>"
       "<tr><td>command</td><td><code>{}</code></td></tr></table>\n",
       style, escape_html(head.machine), escape_html(head.version), head.date, escape_html(head.command));
   out +=
-      "<p>Every case has a known answer: an exact or converged solution, or an experiment. CPU seconds are those of one thread. The dotted line in a "
-      "plot is a good number as the case's text has it; below and to the left is better.</p>\n";
-  if (head.quick) out += "<p>These are the coarse resolutions of the quick suite; without <code>--quick</code> finer ones run.</p>\n";
-  if (sections.size() < n_expected) out += fmt::format("<p class=\"failed\">{} of {} sections so far.</p>\n", sections.size(), n_expected);
+      "<p>Every case has a known answer: an exact or converged solution, or an experiment. CPU seconds are those of "
+      "one thread. The dotted line in a plot is a good number as the case's text has it; below and to the left is "
+      "better.</p>\n";
+  if (head.quick)
+    out += "<p>These are the coarse resolutions of the quick suite; without <code>--quick</code> finer ones run.</p>\n";
+  if (sections.size() < n_expected)
+    out += fmt::format("<p class=\"failed\">{} of {} sections so far.</p>\n", sections.size(), n_expected);
   out +=
-      "<table><tr><th>case</th><th>method</th><th>finest</th><th>error</th><th>a good number</th><th>met</th><th>order</th><th>CPU seconds</th></tr>\n";
+      "<table><tr><th>case</th><th>method</th><th>finest</th><th>error</th><th>a good "
+      "number</th><th>met</th><th>order</th><th>CPU seconds</th></tr>\n";
   for (const Section& section : sections) out += section.summary;
   out += "</table>\n";
   for (const Section& section : sections) out += section.body;

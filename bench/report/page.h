@@ -24,7 +24,8 @@ std::string describe_machine();
 /// This moment as "2026-01-31 12:34 UTC".
 std::string describe_now();
 
-/// The order of convergence of one method's runs, error = C resolution^-p by least squares; nothing where fewer than two went well.
+/// The order of convergence of one method's runs, error = C resolution^-p by least squares; nothing where fewer than
+/// two went well.
 std::optional<double> fitted_order(const std::vector<Run>& runs, std::size_t method);
 
 /// A part of the page.

@@ -28,7 +28,8 @@ constexpr const char* stability_name = "stability";
 class ReportFolder {
  public:
   ReportFolder(const Selection& selection, const ReportOptions& options)
-      : options_(options), head_{describe_machine(), std::string(version), describe_now(), options.command, options.quick} {
+      : options_(options),
+        head_{describe_machine(), std::string(version), describe_now(), options.command, options.quick} {
     for (const Case& problem : selection.cases) order_.push_back(problem.name);
     if (selection.stability) order_.emplace_back(stability_name);
     create_directories_or_fail(options.folder);
@@ -51,7 +52,8 @@ class ReportFolder {
   std::vector<RunRow> rows() const {
     std::vector<RunRow> all;
     for (const std::string& name : order_)
-      if (const auto found = rows_.find(name); found != rows_.end()) all.insert(all.end(), found->second.begin(), found->second.end());
+      if (const auto found = rows_.find(name); found != rows_.end())
+        all.insert(all.end(), found->second.begin(), found->second.end());
     return all;
   }
 
@@ -79,7 +81,8 @@ void fail_with(const std::vector<std::string>& complaints, const std::string& wh
 std::vector<std::string> failures(const std::vector<RunRow>& rows) {
   std::vector<std::string> out;
   for (const RunRow& row : rows)
-    if (!row.failure.empty()) out.push_back(fmt::format("{}, {} at {:g} failed: {}", row.problem, row.method, row.resolution, row.failure));
+    if (!row.failure.empty())
+      out.push_back(fmt::format("{}, {} at {:g} failed: {}", row.problem, row.method, row.resolution, row.failure));
   return out;
 }
 
@@ -92,28 +95,37 @@ Selection select(const std::vector<Case>& all, const std::vector<std::string>& n
   for (const std::string& name : names) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     const auto nearest = nearest_word(name, known);
-    fail("there is no case \"{}\"{}; cases are {}", name, nearest ? fmt::format(" (did you mean \"{}\"?)", *nearest) : "", fmt::join(known, ", "));
+    fail("there is no case \"{}\"{}; cases are {}", name,
+         nearest ? fmt::format(" (did you mean \"{}\"?)", *nearest) : "", fmt::join(known, ", "));
   }
-  const auto wanted = [&](const std::string& name) { return names.empty() || std::find(names.begin(), names.end(), name) != names.end(); };
+  const auto wanted = [&](const std::string& name) {
+    return names.empty() || std::find(names.begin(), names.end(), name) != names.end();
+  };
   Selection selection{{}, wanted(stability_name)};
-  std::copy_if(all.begin(), all.end(), std::back_inserter(selection.cases), [&](const Case& problem) { return wanted(problem.name); });
+  std::copy_if(all.begin(), all.end(), std::back_inserter(selection.cases),
+               [&](const Case& problem) { return wanted(problem.name); });
   return selection;
 }
 
 void make_report(const Selection& selection, const ReportOptions& options, Progress& progress) {
   check_gnuplot();
   ExpectedErrors expected;
-  if (options.check || (options.write_expected && std::filesystem::exists(options.expected))) expected = read_expected(options.expected);
+  if (options.check || (options.write_expected && std::filesystem::exists(options.expected)))
+    expected = read_expected(options.expected);
   ReportFolder folder(selection, options);
-  run_suite(selection.cases, options.quick, options.threads, progress, [&](const CaseResult& result) { folder.add(result); });
+  run_suite(selection.cases, options.quick, options.threads, progress,
+            [&](const CaseResult& result) { folder.add(result); });
   if (selection.stability) folder.add(probe_stability(options.quick, options.threads, progress));
 
   const std::vector<RunRow> rows = folder.rows();
   if (options.write_expected) return write_expected(options.expected, std::move(expected), rows);
   if (options.check)
-    fail_with(compare_with_expected(expected, rows),
-              fmt::format("worse than {}; where the change is meant, `./smelt report --quick --write-expected` stores the errors anew",
-                          options.expected.string()));
+    fail_with(
+        compare_with_expected(expected, rows),
+        fmt::format(
+            "worse than {}; where the change is meant, `./smelt report --quick --write-expected` stores the errors "
+            "anew",
+            options.expected.string()));
   fail_with(failures(rows), fmt::format("the rest is in {}", (options.folder / "index.html").string()));
 }
 

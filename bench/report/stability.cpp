@@ -19,7 +19,8 @@ namespace {
 
 using extremes::default_courant;
 
-const std::vector<double> quick_factors{0.1, default_courant, 0.5, 1.0, 2.0}, full_factors{0.05, 0.1, default_courant, 0.4, 0.6, 0.8, 1.0, 1.4, 2.0};
+const std::vector<double> quick_factors{0.1, default_courant, 0.5, 1.0, 2.0},
+    full_factors{0.05, 0.1, default_courant, 0.4, 0.6, 0.8, 1.0, 1.4, 2.0};
 constexpr int n_map_steps = 1000;
 
 /// Values from `low` to `high` at one ratio.
@@ -41,11 +42,13 @@ Stability lay_out(bool quick) {
   Stability stability;
   for (const extremes::HardCase& hard : extremes::hard_cases()) {
     stability.cases.push_back({hard.name, {}});
-    for (const double courant : quick ? quick_factors : full_factors) stability.cases.back().trials.push_back({.courant = courant});
+    for (const double courant : quick ? quick_factors : full_factors)
+      stability.cases.back().trials.push_back({.courant = courant});
   }
   for (const bool relaxed : {false, true})
     for (const double jump : geometric(1.0, 1e5, quick ? 6 : 11))
-      for (const double courant : geometric(0.1, 6.4, quick ? 7 : 13)) stability.map.push_back({jump, relaxed, {.courant = courant}});
+      for (const double courant : geometric(0.1, 6.4, quick ? 7 : 13))
+        stability.map.push_back({jump, relaxed, {.courant = courant}});
   return stability;
 }
 
@@ -59,19 +62,23 @@ std::string case_row(const HardCaseResult& result) {
   const auto held = [](const Trial& trial) { return trial.held(); };
   const auto smallest = std::find_if(result.trials.begin(), result.trials.end(), held);
   const auto largest = std::find_if(result.trials.rbegin(), result.trials.rend(), held);
-  std::string row = fmt::format("<tr><td>{}</td><td>{}</td><td>{:.2g}</td><td>{:.2g}</td><td>{}</td>", escape_html(result.name), verdict(usual),
-                                usual.seen.energy_gain, usual.seen.density_error, usual.seen.steps);
+  std::string row =
+      fmt::format("<tr><td>{}</td><td>{}</td><td>{:.2g}</td><td>{:.2g}</td><td>{}</td>", escape_html(result.name),
+                  verdict(usual), usual.seen.energy_gain, usual.seen.density_error, usual.seen.steps);
   if (smallest == result.trials.end()) return row + "<td>none</td><td></td></tr>\n";
-  return row + fmt::format("<td>{:g} to {:g}</td><td>{:.2g} to {:.2g}</td></tr>\n", smallest->courant, largest->courant, smallest->mean_step(),
-                           largest->mean_step());
+  return row + fmt::format("<td>{:g} to {:g}</td><td>{:.2g} to {:.2g}</td></tr>\n", smallest->courant, largest->courant,
+                           smallest->mean_step(), largest->mean_step());
 }
 
 /// The cells of one method by how they fared.
 std::string draw_map(const std::vector<MapCell>& map, bool relaxed, const std::filesystem::path& folder) {
   Plot plot{"CFL factor C of the time step", "jump number J", true, {}, {}};
-  plot.series = {{"held", {}, Series::Look::squares, 2}, {"gained energy", {}, Series::Look::squares, 4}, {"gave up", {}, Series::Look::squares, 1}};
+  plot.series = {{"held", {}, Series::Look::squares, 2},
+                 {"gained energy", {}, Series::Look::squares, 4},
+                 {"gave up", {}, Series::Look::squares, 1}};
   for (const MapCell& cell : map)
-    if (cell.relaxed == relaxed) plot.series[!cell.trial.failure.empty() ? 2 : cell.trial.held() ? 0 : 1].curve.add(cell.trial.courant, cell.jump);
+    if (cell.relaxed == relaxed)
+      plot.series[!cell.trial.failure.empty() ? 2 : cell.trial.held() ? 0 : 1].curve.add(cell.trial.courant, cell.jump);
   return draw_plot(plot, relaxed ? "stability_relaxed" : "stability_explicit", folder);
 }
 
@@ -81,15 +88,20 @@ std::string draw_steps(const std::vector<MapCell>& map, const std::filesystem::p
   for (const bool relaxed : {false, true}) {
     std::map<double, double> longest;
     for (const MapCell& cell : map)
-      if (cell.relaxed == relaxed && cell.trial.held()) longest[cell.jump] = std::max(longest[cell.jump], cell.trial.mean_step());
-    plot.series.push_back({relaxed ? "relaxed stress" : "explicit: stress at once", {}, Series::Look::line_and_points, relaxed ? 0u : 1u});
+      if (cell.relaxed == relaxed && cell.trial.held())
+        longest[cell.jump] = std::max(longest[cell.jump], cell.trial.mean_step());
+    plot.series.push_back({relaxed ? "relaxed stress" : "explicit: stress at once",
+                           {},
+                           Series::Look::line_and_points,
+                           relaxed ? 0u : 1u});
     for (const auto& [jump, step] : longest) plot.series.back().curve.add(jump, step);
   }
   return draw_plot(plot, "stability_steps", folder);
 }
 
 std::string csv_row(const std::string& scene, const std::string& jump, const Trial& trial) {
-  return fmt::format("\"{}\",{},{},{},{},{},{}\n", scene, jump, trial.courant, trial.seen.energy_gain, trial.seen.density_error, trial.seen.steps,
+  return fmt::format("\"{}\",{},{},{},{},{},{}\n", scene, jump, trial.courant, trial.seen.energy_gain,
+                     trial.seen.density_error, trial.seen.steps,
                      !trial.failure.empty() ? "gave up"
                      : trial.held()         ? "held"
                                             : "gained energy");
@@ -102,7 +114,8 @@ bool Trial::held() const {
 }
 
 const Trial* HardCaseResult::at(double courant) const {
-  const auto found = std::find_if(trials.begin(), trials.end(), [&](const Trial& trial) { return trial.courant == courant; });
+  const auto found =
+      std::find_if(trials.begin(), trials.end(), [&](const Trial& trial) { return trial.courant == courant; });
   return found == trials.end() ? nullptr : &*found;
 }
 
@@ -120,7 +133,8 @@ Stability probe_stability(bool quick, unsigned threads, Progress& progress) {
     }
   };
   const auto finished = [&](std::size_t k) {
-    if (k < n_hard && (k + 1) % n_factors == 0) progress.message(fmt::format("stability, {}", stability.cases[k / n_factors].name));
+    if (k < n_hard && (k + 1) % n_factors == 0)
+      progress.message(fmt::format("stability, {}", stability.cases[k / n_factors].name));
   };
   run_jobs(n_hard + stability.map.size(), threads, progress, run, finished);
   return stability;
@@ -128,25 +142,32 @@ Stability probe_stability(bool quick, unsigned threads, Progress& progress) {
 
 Section write_stability_section(const Stability& stability, bool quick, const std::filesystem::path& folder) {
   std::string out = fmt::format(
-      "<section id=\"stability\">\n<h2>Stability</h2>\n<p>Scenes at the edge of what the method can be asked. A scene holds where it ends, finite, "
-      "and no more energy comes from nowhere than {:g} % of its kinetic energy at the start. Figures are those at the CFL factor {:g}; the last two "
-      "columns say between which of the factors tried it held, and how long the steps then were.</p>\n"
-      "<table><tr><th>scene</th><th>verdict</th><th>energy gained / kinetic</th><th>largest density error</th><th>steps</th>"
-      "<th>held at CFL factors</th><th>mean step [s]</th></tr>\n",
+      "<section id=\"stability\">\n<h2>Stability</h2>\n<p>Scenes at the edge of what the method can be asked. A scene "
+      "holds where it ends, finite, and no more energy comes from nowhere than {:g} % of its kinetic energy at the "
+      "start. Figures are those at the CFL factor {:g}; the last two columns say between which of the factors tried it "
+      "held, and how long the steps then were.</p>\n<table><tr><th>scene</th><th>verdict</th><th>energy gained / "
+      "kinetic</th><th>largest density error</th><th>steps</th><th>held at CFL factors</th><th>mean step "
+      "[s]</th></tr>\n",
       100.0 * extremes::energy_bar, default_courant);
   for (const HardCaseResult& result : stability.cases) out += case_row(result);
   out += "</table>\n<div class=\"plots\">\n";
-  out += write_figure(draw_map(stability.map, false, folder),
-                      fmt::format("The explicit method, whose stress follows the strain rate at once: a block of 216 particles that creeps, after {} "
-                                  "steps, by CFL factor and jump number. Its step is C min(h/(c + v), h^2 rho/(8 eta)).",
-                                  n_map_steps));
-  out += write_figure(draw_map(stability.map, true, folder), "The same with the relaxed stress, whose step does not depend on the viscosity.");
-  out += write_figure(draw_steps(stability.map, folder), "The longest steps of both maps at which the block held: what the relaxed stress is for.");
-  out += fmt::format("</div>\n<p>To repeat it: <code>./smelt report stability{}</code></p>\n</section>\n", quick ? " --quick" : "");
+  out += write_figure(
+      draw_map(stability.map, false, folder),
+      fmt::format(
+          "The explicit method, whose stress follows the strain rate at once: a block of 216 particles that creeps, "
+          "after {} steps, by CFL factor and jump number. Its step is C min(h/(c + v), h^2 rho/(8 eta)).",
+          n_map_steps));
+  out += write_figure(draw_map(stability.map, true, folder),
+                      "The same with the relaxed stress, whose step does not depend on the viscosity.");
+  out += write_figure(draw_steps(stability.map, folder),
+                      "The longest steps of both maps at which the block held: what the relaxed stress is for.");
+  out += fmt::format("</div>\n<p>To repeat it: <code>./smelt report stability{}</code></p>\n</section>\n",
+                     quick ? " --quick" : "");
   const auto n_held = std::count_if(stability.cases.begin(), stability.cases.end(),
                                     [](const HardCaseResult& result) { return result.at(default_courant)->held(); });
-  return {fmt::format("<tr><td><a href=\"#stability\">Stability</a></td><td colspan=\"7\">{} of {} hard cases held</td></tr>\n", n_held,
-                      stability.cases.size()),
+  return {fmt::format(
+              "<tr><td><a href=\"#stability\">Stability</a></td><td colspan=\"7\">{} of {} hard cases held</td></tr>\n",
+              n_held, stability.cases.size()),
           out};
 }
 
@@ -155,7 +176,8 @@ std::string write_stability_csv(const Stability& stability) {
   for (const HardCaseResult& result : stability.cases)
     for (const Trial& trial : result.trials) out += csv_row(result.name, "", trial);
   for (const MapCell& cell : stability.map)
-    out += csv_row(cell.relaxed ? "block, relaxed stress" : "block, stress at once", fmt::format("{:.4g}", cell.jump), cell.trial);
+    out += csv_row(cell.relaxed ? "block, relaxed stress" : "block, stress at once", fmt::format("{:.4g}", cell.jump),
+                   cell.trial);
   return out;
 }
 

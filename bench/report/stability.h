@@ -13,8 +13,8 @@ namespace smelt {
 
 /// How a scene fared at one CFL factor.
 struct Trial {
-  double courant = 0.0;   ///< C of the time step
-  Watched seen = {};      ///< the worst on the way
+  double courant = 0.0;      ///< C of the time step
+  Watched seen = {};         ///< the worst on the way
   std::string failure = {};  ///< why the solver gave up; empty where it did not
 
   /// Whether it ended, and no more energy than extremes::energy_bar came from nowhere.

@@ -36,7 +36,8 @@ bool CaseResult::failed() const {
   return std::any_of(runs.begin(), runs.end(), [](const Run& run) { return run.failed(); });
 }
 
-void run_suite(const std::vector<Case>& cases, bool quick, unsigned threads, Progress& progress, const std::function<void(CaseResult)>& done) {
+void run_suite(const std::vector<Case>& cases, bool quick, unsigned threads, Progress& progress,
+               const std::function<void(CaseResult)>& done) {
   std::vector<CaseResult> results;
   std::vector<Place> places;
   for (const Case& problem : cases) {
@@ -50,7 +51,9 @@ void run_suite(const std::vector<Case>& cases, bool quick, unsigned threads, Pro
   std::vector<std::size_t> left;  // runs of each case
   for (const CaseResult& result : results) left.push_back(result.runs.size());
 
-  const auto run = [&](std::size_t k) { perform(results[places[k].problem].problem, results[places[k].problem].runs[places[k].run]); };
+  const auto run = [&](std::size_t k) {
+    perform(results[places[k].problem].problem, results[places[k].problem].runs[places[k].run]);
+  };
   const auto finished = [&](std::size_t k) {
     CaseResult& result = results[places[k].problem];
     progress.message(describe(result.problem, result.runs[places[k].run]));

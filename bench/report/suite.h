@@ -27,8 +27,9 @@ struct CaseResult {
   bool failed() const;
 };
 
-/// Runs all methods of the cases at their quick or full resolutions as run_jobs does, and calls `done` with each case as its last run ends. A run
-/// that throws is a failure of that run alone.
-void run_suite(const std::vector<Case>& cases, bool quick, unsigned threads, Progress& progress, const std::function<void(CaseResult)>& done);
+/// Runs all methods of the cases at their quick or full resolutions as run_jobs does, and calls `done` with each case
+/// as its last run ends. A run that throws is a failure of that run alone.
+void run_suite(const std::vector<Case>& cases, bool quick, unsigned threads, Progress& progress,
+               const std::function<void(CaseResult)>& done);
 
 }  // namespace smelt

@@ -7,8 +7,9 @@
 
 namespace smelt {
 
-/// Unit normal by winding: counter-clockwise triangles seen from the side it points to; of a segment a -> b, the side on the right
-/// (outward where the segments run counter-clockwise round a solid); +x in 1D. Zero for a facet without area.
+/// Unit normal by winding: counter-clockwise triangles seen from the side it points to; of a segment a -> b, the side
+/// on the right (outward where the segments run counter-clockwise round a solid); +x in 1D. Zero for a facet without
+/// area.
 template <int Dim>
 Vec<Dim> facet_normal(const Simplex<Dim>& facet) {
   Vec<Dim> normal;

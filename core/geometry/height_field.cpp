@@ -18,7 +18,8 @@ void check_field(const HeightField& field) {
 
 /// Catmull-Rom cubic between p1 (t = 0) and p2 (t = 1).
 double cubic(double p0, double p1, double p2, double p3, double t) {
-  const double a = -0.5 * p0 + 1.5 * p1 - 1.5 * p2 + 0.5 * p3, b = p0 - 2.5 * p1 + 2.0 * p2 - 0.5 * p3, c = 0.5 * (p2 - p0);
+  const double a = -0.5 * p0 + 1.5 * p1 - 1.5 * p2 + 0.5 * p3, b = p0 - 2.5 * p1 + 2.0 * p2 - 0.5 * p3,
+               c = 0.5 * (p2 - p0);
   return ((a * t + b) * t + c) * t + p1;
 }
 
@@ -42,7 +43,9 @@ std::vector<double> refine_line(const double* values, std::size_t count, std::si
 
 /// Indices of the rim's vertices, counter-clockwise seen from above (with x to the right and z towards the viewer).
 std::vector<std::uint32_t> rim_of(const HeightField& field) {
-  const auto index = [&](std::size_t column, std::size_t row) { return static_cast<std::uint32_t>(row * field.n_columns + column); };
+  const auto index = [&](std::size_t column, std::size_t row) {
+    return static_cast<std::uint32_t>(row * field.n_columns + column);
+  };
   const std::size_t last_column = field.n_columns - 1, last_row = field.n_rows - 1;
   std::vector<std::uint32_t> rim;
   for (std::size_t c = 0; c < last_column; ++c) rim.push_back(index(c, last_row));
@@ -81,7 +84,8 @@ TriangleMesh make_terrain_sheet(const HeightField& field) {
   for (std::size_t r = 0; r < field.n_rows; ++r)
     for (std::size_t c = 0; c < field.n_columns; ++c) {
       if (!std::isfinite(field.at(c, r))) fail("the height of row {}, column {} is not a finite number", r + 1, c + 1);
-      mesh.vertices.emplace_back(west + field.cell * static_cast<double>(c), field.at(c, r), north + field.cell * static_cast<double>(r));
+      mesh.vertices.emplace_back(west + field.cell * static_cast<double>(c), field.at(c, r),
+                                 north + field.cell * static_cast<double>(r));
     }
   for (std::size_t r = 0; r + 1 < field.n_rows; ++r)
     for (std::size_t c = 0; c + 1 < field.n_columns; ++c) {
@@ -101,7 +105,8 @@ TriangleMesh make_terrain_sheet(const HeightField& field) {
 TriangleMesh make_terrain_solid(const HeightField& field, double bottom) {
   TriangleMesh mesh = make_terrain_sheet(field);
   const double lowest = *std::min_element(field.height.begin(), field.height.end());
-  if (!(bottom < lowest)) fail("the bottom of a terrain must be below its lowest height, {} m, is at {} m", lowest, bottom);
+  if (!(bottom < lowest))
+    fail("the bottom of a terrain must be below its lowest height, {} m, is at {} m", lowest, bottom);
   const std::vector<std::uint32_t> rim = rim_of(field);
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const std::uint32_t v : rim) mesh.vertices.emplace_back(mesh.vertices[v][0], bottom, mesh.vertices[v][2]);

@@ -18,7 +18,8 @@ std::size_t count_fans(std::vector<Wedge>& wedges) {
   std::size_t n = wedges.size();
   for (std::size_t a = 0; a < wedges.size(); ++a)
     for (std::size_t b = 0; b < a; ++b) {
-      const bool touch = std::find_first_of(wedges[a].begin(), wedges[a].end(), wedges[b].begin(), wedges[b].end()) != wedges[a].end();
+      const bool touch =
+          std::find_first_of(wedges[a].begin(), wedges[a].end(), wedges[b].begin(), wedges[b].end()) != wedges[a].end();
       if (!touch || fan[a] == fan[b]) continue;
       std::replace(fan.begin(), fan.end(), std::max(fan[a], fan[b]), std::min(fan[a], fan[b]));
       --n;

@@ -5,7 +5,8 @@
 
 namespace smelt {
 
-/// Vertices at which faces meet in more than one fan: two pieces that touch in a point, say. Faces of one fan share edges.
+/// Vertices at which faces meet in more than one fan: two pieces that touch in a point, say. Faces of one fan share
+/// edges.
 std::size_t count_nonmanifold_vertices(const TriangleMesh& mesh);
 
 }  // namespace smelt

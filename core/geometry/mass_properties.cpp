@@ -5,8 +5,12 @@ namespace smelt {
 namespace {
 
 /// Of the simplex between a facet and the origin, positive where the facet is wound outward.
-double signed_volume(const Simplex<3>& f) { return f[0].dot(f[1].cross(f[2])) / 6.0; }
-double signed_volume(const Simplex<2>& f) { return 0.5 * (f[0][0] * f[1][1] - f[0][1] * f[1][0]); }
+double signed_volume(const Simplex<3>& f) {
+  return f[0].dot(f[1].cross(f[2])) / 6.0;
+}
+double signed_volume(const Simplex<2>& f) {
+  return 0.5 * (f[0][0] * f[1][1] - f[0][1] * f[1][0]);
+}
 
 }  // namespace
 

@@ -12,11 +12,11 @@ namespace {
 template <int Dim>
 struct Stretch {
   const Keyframe<Dim>* from;
-  Vec<Dim> way;          ///< [m]
-  Mat<Dim> turn;         ///< skew [rad]
-  double share = 0.0;    ///< of way and turn
-  double rate = 0.0;     ///< of the share [1/s]
-  double rise = 0.0;     ///< of the rate [1/s^2]
+  Vec<Dim> way;        ///< [m]
+  Mat<Dim> turn;       ///< skew [rad]
+  double share = 0.0;  ///< of way and turn
+  double rate = 0.0;   ///< of the share [1/s]
+  double rise = 0.0;   ///< of the rate [1/s^2]
 };
 
 template <int Dim>
@@ -30,8 +30,10 @@ Stretch<Dim> stretch_between(const Motion<Dim>& motion, std::size_t k) {
 template <int Dim>
 std::size_t stretch_index(const Motion<Dim>& motion, double time) {
   const auto& keys = motion.keyframes;
-  const auto after = std::upper_bound(keys.begin(), keys.end(), time, [](double t, const auto& key) { return t < key.time; });
-  return static_cast<std::size_t>(std::clamp<std::ptrdiff_t>(after - keys.begin() - 1, 0, static_cast<std::ptrdiff_t>(keys.size()) - 2));
+  const auto after =
+      std::upper_bound(keys.begin(), keys.end(), time, [](double t, const auto& key) { return t < key.time; });
+  return static_cast<std::size_t>(
+      std::clamp<std::ptrdiff_t>(after - keys.begin() - 1, 0, static_cast<std::ptrdiff_t>(keys.size()) - 2));
 }
 
 template <int Dim>
@@ -77,7 +79,8 @@ template <int Dim>
 Twist<Dim> twist_at(const Motion<Dim>& motion, double time) {
   if (motion.keyframes.empty()) return {motion.velocity, motion.pivot + time * motion.velocity, motion.spin};
   const Stretch<Dim> stretch = stretch_at(motion, time);
-  return {stretch.rate * stretch.way, motion.pivot + stretch.from->translation + stretch.share * stretch.way, stretch.rate * stretch.turn};
+  return {stretch.rate * stretch.way, motion.pivot + stretch.from->translation + stretch.share * stretch.way,
+          stretch.rate * stretch.turn};
 }
 
 template <int Dim>
@@ -96,7 +99,8 @@ double speed_bound(const Motion<Dim>& motion, double begin, double end, double r
   if (motion.keyframes.empty()) return motion.velocity.norm() + reach * skew_angle<Dim>(motion.spin);
   if (end < motion.keyframes.front().time || begin >= motion.keyframes.back().time) return 0.0;
   double fastest = 0.0;
-  for (std::size_t k = stretch_index(motion, begin); k + 1 < motion.keyframes.size() && motion.keyframes[k].time <= end; ++k) {
+  for (std::size_t k = stretch_index(motion, begin); k + 1 < motion.keyframes.size() && motion.keyframes[k].time <= end;
+       ++k) {
     const Stretch<Dim> stretch = stretch_between(motion, k);
     // A smooth stretch is fastest in its middle.
     const double rate = (motion.smooth ? 1.5 : 1.0) / (motion.keyframes[k + 1].time - stretch.from->time);

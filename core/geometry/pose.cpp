@@ -18,7 +18,9 @@ Mat<2> to_skew(double omega) {
   return skew;
 }
 
-Vec<3> from_skew(const Mat<3>& skew) { return {skew(2, 1), skew(0, 2), skew(1, 0)}; }
+Vec<3> from_skew(const Mat<3>& skew) {
+  return {skew(2, 1), skew(0, 2), skew(1, 0)};
+}
 
 template <int Dim>
 double skew_angle(const Mat<Dim>& skew) {

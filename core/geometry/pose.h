@@ -1,8 +1,8 @@
 #pragma once
 // Where a rigid thing is and how it moves, in 1, 2 and 3 dimensions.
 //
-// Rotations are matrices, and angular velocities skew matrices W with W y = omega x y in 3D (in 2D: omega times y turned by 90 degrees),
-// so that one code serves all dimensions.
+// Rotations are matrices, and angular velocities skew matrices W with W y = omega x y in 3D (in 2D: omega times y
+// turned by 90 degrees), so that one code serves all dimensions.
 
 #include "core/geometry/vec.h"
 

@@ -204,7 +204,8 @@ Wrapped wrap(const CgalMesh& mesh, double spacing) {
 
 void validate_surface(const TriangleMesh& mesh) {
   if (mesh.triangles.empty())
-    fail("the mesh has no triangles ({} vertices); a body needs a closed surface, a collider any", mesh.vertices.size());
+    fail("the mesh has no triangles ({} vertices); a body needs a closed surface, a collider any",
+         mesh.vertices.size());
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
     if (const Vec3& p = mesh.vertices[v]; !p.allFinite())
       fail("vertex {} of the mesh is ({}, {}, {}); coordinates must be finite numbers", v + 1, p.x(), p.y(), p.z());

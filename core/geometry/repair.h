@@ -21,8 +21,9 @@ struct RepairedMesh {
   MeshReport report;
 };
 
-/// Refuses what is no surface at all. Throws Error (the caller adds the file's name) for a mesh without triangles, an index out of range, a
-/// vertex that is not finite, or only faces without area. Open and flat ones pass: obstacles may be sheets.
+/// Refuses what is no surface at all. Throws Error (the caller adds the file's name) for a mesh without triangles, an
+/// index out of range, a vertex that is not finite, or only faces without area. Open and flat ones pass: obstacles may
+/// be sheets.
 void validate_surface(const TriangleMesh& mesh);
 
 /// Refuses what no repair can help. Throws Error (the caller adds the file's name) for a mesh without triangles, an

@@ -50,7 +50,8 @@ struct SimplexBvh<Dim>::Builder {
     const auto middle = begin + static_cast<std::uint32_t>(std::uint64_t{end - begin} * n_left / n_parts);
     // Ties go by index, so that the tree depends on the simplices alone.
     const auto before = [&](std::uint32_t a, std::uint32_t b) {
-      const double at_a = boxes[a].lower[axis] + boxes[a].upper[axis], at_b = boxes[b].lower[axis] + boxes[b].upper[axis];
+      const double at_a = boxes[a].lower[axis] + boxes[a].upper[axis],
+                   at_b = boxes[b].lower[axis] + boxes[b].upper[axis];
       return at_a != at_b ? at_a < at_b : a < b;
     };
     std::nth_element(order.begin() + begin, order.begin() + middle, order.begin() + end, before);
@@ -99,7 +100,8 @@ struct SimplexBvh<Dim>::Builder {
     bvh.nodes_[node] = filled;
     if (filled.leaf) return bvh.leaves_.push_back(make_leaf(begin, end));
     bvh.nodes_.resize(bvh.nodes_.size() + ends.size());
-    for (std::uint32_t lane = 0; lane < ends.size(); ++lane) build(filled.first + lane, lane == 0 ? begin : ends[lane - 1], ends[lane]);
+    for (std::uint32_t lane = 0; lane < ends.size(); ++lane)
+      build(filled.first + lane, lane == 0 ? begin : ends[lane - 1], ends[lane]);
   }
 };
 
@@ -220,7 +222,9 @@ std::optional<NearestSimplex<Dim>> SimplexBvh<Dim>::nearest(const Vec<Dim>& poin
   visit(0, query, [&](std::uint32_t k) {
     const Vec<Dim> offset = point - closest_point<Dim>(point, simplices_[k]);
     const double distance = offset.norm();
-    if (!(distance < nearest.distance) && !(distance == nearest.distance && k < nearest.simplex && nearest.simplex != none)) return;
+    if (!(distance < nearest.distance) &&
+        !(distance == nearest.distance && k < nearest.simplex && nearest.simplex != none))
+      return;
     nearest = {k, distance, offset};
     query.set_radius(distance);
   });
@@ -237,18 +241,20 @@ double SimplexBvh<Dim>::distance(const Vec<Dim>& point, double limit) const {
 /// Replaces `first` by the contact with simplex `k` where that comes before it.
 template <int Dim>
 template <typename Query>
-void SimplexBvh<Dim>::improve(std::optional<FirstContact<Dim>>& first, std::uint32_t k, Query& query, const Vec<Dim>& centre,
-                              const Vec<Dim>& displacement, double radius) const {
-  const auto contact = sweep_sphere<Dim>(centre, displacement, radius, simplices_[k], first ? first->contact.time : 1.0);
+void SimplexBvh<Dim>::improve(std::optional<FirstContact<Dim>>& first, std::uint32_t k, Query& query,
+                              const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius) const {
+  const auto contact =
+      sweep_sphere<Dim>(centre, displacement, radius, simplices_[k], first ? first->contact.time : 1.0);
   if (!contact) return;
-  if (first && !(contact->time < first->contact.time) && !(contact->time == first->contact.time && k < first->simplex)) return;
+  if (first && !(contact->time < first->contact.time) && !(contact->time == first->contact.time && k < first->simplex))
+    return;
   first = {k, *contact};
   query.limit = static_cast<float>(contact->time);
 }
 
 template <int Dim>
-std::optional<FirstContact<Dim>> SimplexBvh<Dim>::first_contact(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius,
-                                                                std::uint32_t except) const {
+std::optional<FirstContact<Dim>> SimplexBvh<Dim>::first_contact(const Vec<Dim>& centre, const Vec<Dim>& displacement,
+                                                                double radius, std::uint32_t except) const {
   std::optional<FirstContact<Dim>> first;
   if (nodes_.empty() || displacement.isZero(0.0)) return first;
   SweepQuery query(*this, centre, displacement, radius);

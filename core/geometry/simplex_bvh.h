@@ -25,8 +25,9 @@ struct FirstContact {
   SweepContact<Dim> contact;
 };
 
-/// A bounding volume hierarchy: each node tests eight boxes at once, the nearest is entered first. Boxes are floats, widened by what
-/// rounding may take away; answers are those of trying every simplex in double precision. Queries may run on many threads at once.
+/// A bounding volume hierarchy: each node tests eight boxes at once, the nearest is entered first. Boxes are floats,
+/// widened by what rounding may take away; answers are those of trying every simplex in double precision. Queries may
+/// run on many threads at once.
 template <int Dim>
 class SimplexBvh {
  public:

@@ -17,8 +17,9 @@ Vec<Dim> closest_on_segment(const Vec<Dim>& p, const Vec<Dim>& a, const Vec<Dim>
   return a + std::clamp((p - a).dot(ab) / length2, 0.0, 1.0) * ab;
 }
 
-/// Smallest t in [0, 1] at which |offset + t direction| = radius, coming from outside. Measured from the point of closest approach: its
-/// distance is known to a rounding of |offset|, where the difference of squares in b^2 - a c would lose a short radius far away.
+/// Smallest t in [0, 1] at which |offset + t direction| = radius, coming from outside. Measured from the point of
+/// closest approach: its distance is known to a rounding of |offset|, where the difference of squares in b^2 - a c
+/// would lose a short radius far away.
 template <typename Vector>
 std::optional<double> enter_ball(const Vector& offset, const Vector& direction, double radius) {
   const double a = direction.squaredNorm();
@@ -48,8 +49,8 @@ void sweep_corner(const Vec<Dim>& centre, const Vec<Dim>& displacement, double r
 
 /// The side of an edge: a cylinder in 3D, two parallel lines in 2D.
 template <int Dim>
-void sweep_edge(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius, const Vec<Dim>& a, const Vec<Dim>& b,
-                std::optional<SweepContact<Dim>>& best) {
+void sweep_edge(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius, const Vec<Dim>& a,
+                const Vec<Dim>& b, std::optional<SweepContact<Dim>>& best) {
   const Vec<Dim> edge = b - a;
   const double length2 = edge.squaredNorm();
   if (length2 == 0.0) return;
@@ -118,7 +119,8 @@ bool boxes_are_apart(const Vec<Dim>& centre, const Vec<Dim>& displacement, doubl
     upper = upper.cwiseMax(simplex[k]);
   }
   const Vec<Dim> end = centre + displacement;
-  return (lower.array() > centre.cwiseMax(end).array() + radius).any() || (upper.array() < centre.cwiseMin(end).array() - radius).any();
+  return (lower.array() > centre.cwiseMax(end).array() + radius).any() ||
+         (upper.array() < centre.cwiseMin(end).array() - radius).any();
 }
 
 }  // namespace
@@ -166,7 +168,8 @@ std::optional<SweepContact<Dim>> sweep_sphere(const Vec<Dim>& centre, const Vec<
   }
   const Vec<Dim> from_obstacle = centre - closest_point<Dim>(centre, simplex);
   const double distance = from_obstacle.norm();
-  // In contact at the start: what counts is whether it moves deeper. From a place on the obstacle itself every way leads out.
+  // In contact at the start: what counts is whether it moves deeper. From a place on the obstacle itself every way
+  // leads out.
   if (distance <= radius) {
     if (distance == 0.0 || displacement.dot(from_obstacle) >= 0.0) return std::nullopt;
     return SweepContact<Dim>{0.0, from_obstacle / distance};
@@ -182,8 +185,11 @@ std::optional<SweepContact<Dim>> sweep_sphere(const Vec<Dim>& centre, const Vec<
   return best;
 }
 
-template std::optional<SweepContact<1>> sweep_sphere<1>(const Vec<1>&, const Vec<1>&, double, const Simplex<1>&, double);
-template std::optional<SweepContact<2>> sweep_sphere<2>(const Vec<2>&, const Vec<2>&, double, const Simplex<2>&, double);
-template std::optional<SweepContact<3>> sweep_sphere<3>(const Vec<3>&, const Vec<3>&, double, const Simplex<3>&, double);
+template std::optional<SweepContact<1>> sweep_sphere<1>(const Vec<1>&, const Vec<1>&, double, const Simplex<1>&,
+                                                        double);
+template std::optional<SweepContact<2>> sweep_sphere<2>(const Vec<2>&, const Vec<2>&, double, const Simplex<2>&,
+                                                        double);
+template std::optional<SweepContact<3>> sweep_sphere<3>(const Vec<3>&, const Vec<3>&, double, const Simplex<3>&,
+                                                        double);
 
 }  // namespace smelt

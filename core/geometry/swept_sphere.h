@@ -29,8 +29,8 @@ template <int Dim>
 Vec<Dim> closest_point(const Vec<Dim>& point, const Simplex<Dim>& simplex);
 
 /// Contact of a sphere at `centre` with radius `radius` > 0 [m] that moves by `displacement` [m]. A sphere that
-/// overlaps at the start is in contact at time 0 where it moves deeper in, and free where it moves out, as it does in any direction from a
-/// centre on the obstacle itself. Nothing where
+/// overlaps at the start is in contact at time 0 where it moves deeper in, and free where it moves out, as it does in
+/// any direction from a centre on the obstacle itself. Nothing where
 /// they do not touch, nor, perhaps, where they touch later than `until` (fraction).
 template <int Dim>
 std::optional<SweepContact<Dim>> sweep_sphere(const Vec<Dim>& centre, const Vec<Dim>& displacement, double radius,

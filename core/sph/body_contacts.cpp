@@ -14,11 +14,11 @@ constexpr int n_passes = 4, n_sweeps = 30, n_stops = 20;
 template <int Dim>
 struct Contact {
   std::size_t a, b, corner;
-  Vec<Dim> at;      ///< the corner [m]
-  Vec<Dim> normal;  ///< towards the body
+  Vec<Dim> at;          ///< the corner [m]
+  Vec<Dim> normal;      ///< towards the body
   double restitution;   ///< share of the impulse that stops it that is given back; of what does not approach, 0
   double target;        ///< least normal velocity while it is stopped, relative [m/s]
-  Vec<Dim> slide;   ///< tangential velocity to end with, relative [m/s]
+  Vec<Dim> slide;       ///< tangential velocity to end with, relative [m/s]
   bool slippery;        ///< without friction
   double pushed = 0.0;  ///< normal impulse so far [kg m/s]
   bool returned = false;
@@ -44,8 +44,8 @@ void set_end(PlacedObstacle<Dim>& placed, double dt) {
 
 /// The first facet of `b` that a corner of `a` meets within a skin of `skin` on its way through the step, in b's frame.
 template <int Dim>
-std::optional<SweepContact<Dim>> sweep_corner(const PlacedObstacle<Dim>& a, const PlacedObstacle<Dim>& b, const Vec<Dim>& corner, double skin,
-                                              Vec<Dim>& way) {
+std::optional<SweepContact<Dim>> sweep_corner(const PlacedObstacle<Dim>& a, const PlacedObstacle<Dim>& b,
+                                              const Vec<Dim>& corner, double skin, Vec<Dim>& way) {
   const Vec<Dim> from = b.begin.to_rest(a.begin.to_world(corner));
   way = b.end.to_rest(a.end.to_world(corner)) - from;
   const auto first = b.bvh.first_contact(from, way, skin);
@@ -64,7 +64,8 @@ bool may_meet(const PlacedObstacle<Dim>& a, const PlacedObstacle<Dim>& b) {
 
 /// Adds what the corners of `a` meet of `b` and have not met before; returns whether anything was added.
 template <int Dim>
-bool find_contacts(const std::vector<PlacedObstacle<Dim>>& placed, std::size_t a, std::size_t b, double dt, std::vector<Contact<Dim>>& contacts) {
+bool find_contacts(const std::vector<PlacedObstacle<Dim>>& placed, std::size_t a, std::size_t b, double dt,
+                   std::vector<Contact<Dim>>& contacts) {
   const PlacedObstacle<Dim>&body = placed[a], &other = placed[b];
   const double skin = skin_over_reach * body.reach;
   if (!may_meet(body, other)) return false;
@@ -117,12 +118,13 @@ void sweep_impulses(std::vector<PlacedObstacle<Dim>>& placed, std::vector<Contac
     // Friction slows down and never speeds up; without any, the blow alone changes how they slide.
     if (c.slippery || excess.dot(tangential) <= 0.0) continue;
     const Vec<Dim> along = excess / speed;
-    push<Dim>(placed, c, -speed / (compliance_of(placed[c.a], c.at, along) + compliance_of(placed[c.b], c.at, along)) * along);
+    push<Dim>(placed, c,
+              -speed / (compliance_of(placed[c.a], c.at, along) + compliance_of(placed[c.b], c.at, along)) * along);
   }
 }
 
-/// Gives back the impulses that stopped what bounces, by Poisson's hypothesis: with several contacts at once, returning each one's normal
-/// velocity could gain energy, and this cannot.
+/// Gives back the impulses that stopped what bounces, by Poisson's hypothesis: with several contacts at once, returning
+/// each one's normal velocity could gain energy, and this cannot.
 template <int Dim>
 void return_impulses(std::vector<PlacedObstacle<Dim>>& placed, std::vector<Contact<Dim>>& contacts) {
   for (Contact<Dim>& c : contacts) {
@@ -163,7 +165,7 @@ void move_bodies(std::vector<PlacedObstacle<Dim>>& placed, double dt) {
   };
   const auto set_ends = [&] {
     for (PlacedObstacle<Dim>& p : placed)
-      if (p.body) set_end(p, dt);
+      if (p.body && !p.gone) set_end(p, dt);
   };
   set_ends();
   std::vector<Contact<Dim>> contacts;
@@ -175,8 +177,9 @@ void move_bodies(std::vector<PlacedObstacle<Dim>>& placed, double dt) {
     return_impulses(placed, contacts);
     set_ends();
   }
-  // What the impulses have not held stops where it is: the pair that meets first, then the next. The way to an earlier end of a body that turns
-  // is another one, so all are looked at again; what has found no end without a passage stays where it began.
+  // What the impulses have not held stops where it is: the pair that meets first, then the next. The way to an earlier
+  // end of a body that turns is another one, so all are looked at again; what has found no end without a passage stays
+  // where it began.
   for (int pass = 0; !contacts.empty() && pass <= n_stops; ++pass) {
     bool stopped = false;
     for_each_pair([&](std::size_t a, std::size_t b) {
@@ -189,7 +192,7 @@ void move_bodies(std::vector<PlacedObstacle<Dim>>& placed, double dt) {
     if (!stopped) break;
   }
   for (PlacedObstacle<Dim>& p : placed) {
-    if (!p.body) continue;
+    if (!p.body || p.gone) continue;
     const Vec<Dim> from = p.begin.to_world(p.pivot), to = p.end.to_world(p.pivot);
     p.twist = {(to - from) / dt, to, p.turn / dt};
   }

@@ -25,7 +25,7 @@ struct Moving {
   const PlacedObstacle<Dim>* carrier = nullptr;  ///< what it touched last: it goes straight in that frame
   std::vector<BodyHit<Dim>>* hits = nullptr;
   std::uint32_t carrier_index = 0;
-  Vec<Dim> relative = Vec<Dim>::Zero();          ///< transport less the carrier's motion there [m/s]: exactly 0 for what sticks
+  Vec<Dim> relative = Vec<Dim>::Zero();  ///< transport less the carrier's motion there [m/s]: exactly 0 for what sticks
 };
 
 /// The way to where it would be at the end of a leg if it hit nothing.
@@ -63,12 +63,14 @@ void push_out(const Obstacles<Dim>& obstacles, double radius, Vec<Dim>& position
       if (!touched) break;
       // From a place on the facet itself, to its front.
       const double distance = touched->distance;
-      const Vec<Dim> way = distance > 0.0 ? Vec<Dim>((least - distance) / distance * touched->offset)
-                                          : Vec<Dim>(least * facet_normal<Dim>(placed.bvh.simplices()[touched->simplex]));
+      const Vec<Dim> way = distance > 0.0
+                               ? Vec<Dim>((least - distance) / distance * touched->offset)
+                               : Vec<Dim>(least * facet_normal<Dim>(placed.bvh.simplices()[touched->simplex]));
       double share = 1.0;
       // Nothing is nearer than what it leaves: there may be something in the way only if it comes from deep inside.
       if (distance < 0.51 * least)
-        if (const auto hit = placed.bvh.first_contact(local, way, Colliders<Dim>::squeezed * least, touched->simplex)) share = hit->contact.time;
+        if (const auto hit = placed.bvh.first_contact(local, way, Colliders<Dim>::squeezed * least, touched->simplex))
+          share = hit->contact.time;
       local += share * way;
       moved = true;
     }
@@ -76,13 +78,16 @@ void push_out(const Obstacles<Dim>& obstacles, double radius, Vec<Dim>& position
   }
 }
 
-/// Into how many equal legs the step is cut by what turns within `reach`: over a turn by a, the chord leaves an arc of radius R by R a^2/8.
+/// Into how many equal legs the step is cut by what turns within `reach`: over a turn by a, the chord leaves an arc of
+/// radius R by R a^2/8.
 template <int Dim>
 int count_legs(const Obstacles<Dim>& obstacles, const Vec<Dim>& position, double reach, double radius) {
   double legs = 1.0;
   for (const PlacedObstacle<Dim>& placed : obstacles) {
-    if (!placed.turning() || placed.gone || placed.bvh.distance(placed.begin.to_rest(position), reach) >= reach) continue;
-    legs = std::max(legs, std::ceil(skew_angle<Dim>(placed.turn) * std::sqrt((placed.reach + radius) / (0.8 * radius_at(placed, radius)))));
+    if (!placed.turning() || placed.gone || placed.bvh.distance(placed.begin.to_rest(position), reach) >= reach)
+      continue;
+    legs = std::max(legs, std::ceil(skew_angle<Dim>(placed.turn) *
+                                    std::sqrt((placed.reach + radius) / (0.8 * radius_at(placed, radius)))));
   }
   return static_cast<int>(legs);
 }
@@ -98,13 +103,15 @@ Way<Dim> find_way(const Moving<Dim>& m, double leg_end, double dt) {
 
 /// Each obstacle sees the way in its own frame.
 template <int Dim>
-FirstHit<Dim> find_first_hit(const Obstacles<Dim>& obstacles, double radius, const Moving<Dim>& sphere, const Way<Dim>& straight, double leg_end) {
+FirstHit<Dim> find_first_hit(const Obstacles<Dim>& obstacles, double radius, const Moving<Dim>& sphere,
+                             const Way<Dim>& straight, double leg_end) {
   FirstHit<Dim> first;
   for (std::uint32_t o = 0; o < obstacles.size(); ++o) {
     const PlacedObstacle<Dim>& placed = obstacles[o];
     if (placed.gone) continue;
     const Vec<Dim> from = placed.pose(sphere.share).to_rest(sphere.position);
-    const Vec<Dim> way = &placed == sphere.carrier ? straight.in_carrier : Vec<Dim>(placed.pose(leg_end).to_rest(straight.goal) - from);
+    const Vec<Dim> way =
+        &placed == sphere.carrier ? straight.in_carrier : Vec<Dim>(placed.pose(leg_end).to_rest(straight.goal) - from);
     const auto hit = placed.bvh.first_contact(from, way, radius_at(placed, radius));
     if (hit && (!first.touched || hit->contact.time < first.time))
       first = {&placed, o, hit->contact.time, hit->contact.normal, from + hit->contact.time * way};
@@ -219,6 +226,7 @@ template <int Dim>
 double Colliders<Dim>::speed_bound(double begin, double end) const {
   double speed = 0.0;
   for (const Placed& p : placed_) {
+    if (p.gone) continue;
     const double of_motion = p.body ? p.body->state.velocity.norm() + p.reach * skew_angle<Dim>(p.body->spin())
                                     : smelt::speed_bound<Dim>(p.obstacle.motion, begin, end, p.reach);
     speed = std::max(speed, of_motion + p.obstacle.surface_velocity.norm());
@@ -255,7 +263,7 @@ template <int Dim>
 void Colliders<Dim>::begin_step(double time, double dt) {
   step_end_ = time + dt;
   for (Placed& p : placed_) {
-    if (p.body || p.obstacle.motion.still()) continue;
+    if (p.gone || p.body || p.obstacle.motion.still()) continue;
     p.end = pose_at(p.obstacle.motion, time + dt);
     // A spin may go round more than half a turn.
     if (!p.obstacle.motion.spin.isZero(0.0))
@@ -269,7 +277,7 @@ void Colliders<Dim>::begin_step(double time, double dt) {
   if (has_bodies_) move_bodies(placed_, dt);
   step_way_ = 0.0;
   for (const Placed& p : placed_)
-    if (p.moving())
+    if (!p.gone && p.moving())
       step_way_ = std::max(
           step_way_, (p.end.to_world(p.pivot) - p.begin.to_world(p.pivot)).norm() + p.reach * skew_angle<Dim>(p.turn));
 }
@@ -312,7 +320,7 @@ void Colliders<Dim>::set_body_states(std::span<const BodyState<Dim>> states) {
 template <int Dim>
 void Colliders<Dim>::kick_bodies(const Vec<Dim>& gravity, double dt) {
   for (Placed& p : placed_)
-    if (p.body) kick_body(*p.body, gravity, dt);
+    if (p.body && !p.gone) kick_body(*p.body, gravity, dt);
 }
 
 template <int Dim>
@@ -325,8 +333,9 @@ void Colliders<Dim>::set_body_loads(std::span<const Load<Dim>> loads) {
 template <int Dim>
 bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, Vec<Dim>& transport, Vec<Dim>& velocity,
                                  std::vector<BodyHit<Dim>>* hits) const {
-  // A response never lengthens the path relative to what was hit, and each obstacle comes nearer by its own way: twice the longest, since it
-  // may be returned. Twice the radius: a sphere that starts inside an obstacle is first moved out, by up to its radius.
+  // A response never lengthens the path relative to what was hit, and each obstacle comes nearer by its own way: twice
+  // the longest, since it may be returned. Twice the radius: a sphere that starts inside an obstacle is first moved
+  // out, by up to its radius.
   const double reach = 2.0 * radius + dt * (transport.norm() + 2.0 * max_slide_) + 3.0 * step_way_;
   const int n_legs = count_legs<Dim>(placed_, position, reach, radius);
   push_out<Dim>(placed_, radius, position);
@@ -338,7 +347,8 @@ bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, V
     const double leg_end = leg == n_legs ? 1.0 : static_cast<double>(leg) / n_legs;
     while (sphere.share < leg_end) {
       const Way<Dim> straight = find_way(sphere, leg_end, dt);
-      // Only what moves can press a sphere flat. Past facets at rest, more bounces are a corner: there it waits, whole, for the next step.
+      // Only what moves can press a sphere flat. Past facets at rest, more bounces are a corner: there it waits, whole,
+      // for the next step.
       const bool pressed = step_way_ > 0.0;
       const double girth = (pressed && bounces >= max_bounces ? squeezed : 1.0) * radius;
       const FirstHit<Dim> hit = find_first_hit<Dim>(placed_, girth, sphere, straight, leg_end);
@@ -348,7 +358,7 @@ bool Colliders<Dim>::move_sphere(double radius, double dt, Vec<Dim>& position, V
       }
       const double share = sphere.share + hit.time * (leg_end - sphere.share);
       arrive<Dim>(sphere, hit.touched->pose(share).to_world(hit.place), share);
-      if (bounces++ == (pressed ? 2 : 1) * max_bounces)  // held fast from all sides: it goes with what it touched last
+      if (bounces++ >= (pressed ? 2 : 1) * max_bounces)  // held fast from all sides: it goes with what it touched last
         arrive<Dim>(sphere, hit.touched->pose(leg_end).to_world(hit.place), leg_end);
       else
         bounce(sphere, hit);

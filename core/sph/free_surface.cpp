@@ -61,7 +61,8 @@ template <int Dim>
 double cone_occupancy(const FreeSurfaceInput<Dim>& in, std::size_t i, const Vec<Dim>& outward) {
   constexpr double rim = 0.5, core = 0.75, reach = 2.0;  // cosines of 60 and 41 degrees; spacings
   const auto count = [&](double cosine, double distance) {
-    return std::clamp((cosine - rim) / (core - rim), 0.0, 1.0) * std::clamp(2.0 * (reach - distance / in.spacing), 0.0, 1.0);
+    return std::clamp((cosine - rim) / (core - rim), 0.0, 1.0) *
+           std::clamp(2.0 * (reach - distance / in.spacing), 0.0, 1.0);
   };
   double occupancy = 0.0;
   for (const std::int32_t entry : in.lists.row(i)) {
@@ -132,7 +133,8 @@ double share_in_walls(const FreeSurfaceInput<Dim>& in, std::size_t i, const Vec<
 
 /// Weight per area of the surface around particle i [1/m^(Dim - 1)].
 template <int Dim>
-double weight_density(const FreeSurfaceInput<Dim>& in, const SurfaceParticles<Dim>& surface, const LateralKernel<Dim>& kernel, std::size_t i) {
+double weight_density(const FreeSurfaceInput<Dim>& in, const SurfaceParticles<Dim>& surface,
+                      const LateralKernel<Dim>& kernel, std::size_t i) {
   const Vec<Dim>& n_i = surface.normal[i];
   const double half = 0.5 * in.spacing;
   double density = surface.weight[i] * kernel.value(0.0);

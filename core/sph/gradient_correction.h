@@ -9,7 +9,8 @@
 namespace smelt {
 
 /// Below this eigenvalue of the position moment (about 1 in the bulk, less at a surface) a particle has
-/// too few neighbours along the eigenvector to tell a gradient: lone particles, threads across themselves, sheets across theirs.
+/// too few neighbours along the eigenvector to tell a gradient: lone particles, threads across themselves, sheets
+/// across theirs.
 inline constexpr double smallest_trusted_moment = 0.1;
 
 /// Whether all eigenvalues of the symmetric `m` exceed `least` (Sylvester's criterion for m - least).

@@ -2,9 +2,9 @@
 // Pair weights that conduct heat at the right rate on any lattice (docs/decisions/0013-heat-balance.md).
 //
 // The pairwise Laplacian 2 sum V_j F (f_i - f_j) of [P 6-9] gives 2 sum V_j F x_ij = D for f = x, where it should give
-// 0, and theta times too much for f = r^2, with theta the moment trace. Weights F b_ij (1/theta_i + 1/theta_j)/2 with b_ij = 1 +
-// x_ij.(lambda_i - lambda_j), the same from both of a pair's ends, keep the energy to rounding. lambda makes sum V_j F
-// b_ij x_ij vanish: lambda_i = L_i sum V_j F x_ij (1 - x_ij.lambda_j), one Jacobi sweep a step.
+// 0, and theta times too much for f = r^2, with theta the moment trace. Weights F b_ij (1/theta_i + 1/theta_j)/2 with
+// b_ij = 1 + x_ij.(lambda_i - lambda_j), the same from both of a pair's ends, keep the energy to rounding. lambda makes
+// sum V_j F b_ij x_ij vanish: lambda_i = L_i sum V_j F x_ij (1 - x_ij.lambda_j), one Jacobi sweep a step.
 
 #include "core/sph/pair_sums.h"
 

@@ -18,17 +18,19 @@ struct Ambient {
   double heat_transfer = 0.0;  ///< h of convection [W/(m^2 K)]
 };
 
-/// A place that heats the free surface near it, with the weight w = (1 - r^2/R^2)^2 at a distance r below R. Either `power`, shared
-/// over the surface by weight and area (none where there is no surface within R), or the gas of a flame: w h (T_source - T) a square metre.
+/// A place that heats the free surface near it, with the weight w = (1 - r^2/R^2)^2 at a distance r below R. Either
+/// `power`, shared over the surface by weight and area (none where there is no surface within R), or the gas of a
+/// flame: w h (T_source - T) a square metre.
 template <int Dim>
 struct HeatSource {
   Vec<Dim> position = Vec<Dim>::Zero();  ///< at the start [m]
   Vec<Dim> velocity = Vec<Dim>::Zero();  ///< [m/s]
   double radius = 0.0;                   ///< R [m]
-  std::optional<double> power = std::nullopt;  ///< [W], W/m^(3 - Dim) in fewer dimensions; absent: a gas of given temperature
-  double temperature = 0.0;              ///< [K]
-  double heat_transfer = 0.0;            ///< h [W/(m^2 K)]
-  double begin = 0.0;                    ///< it burns from here on [s]
+  std::optional<double> power =
+      std::nullopt;            ///< [W], W/m^(3 - Dim) in fewer dimensions; absent: a gas of given temperature
+  double temperature = 0.0;    ///< [K]
+  double heat_transfer = 0.0;  ///< h [W/(m^2 K)]
+  double begin = 0.0;          ///< it burns from here on [s]
   double end = std::numeric_limits<double>::infinity();  ///< until here [s]
 
   bool burns_at(double time) const { return time >= begin && time < end; }
@@ -42,14 +44,16 @@ struct HeatSource {
 /// The exchange of one square metre of surface at temperature T_s, everything summed up [W/m^2]:
 ///   convection h (T_s - T_a), radiation e sigma (T_s^4 - T_a^4), sources G T_s - I.
 struct SurfaceExchange {
-  double convection = 0.0;           ///< h [W/(m^2 K)]
-  double emissivity = 0.0;           ///< e
-  double ambient = 0.0;              ///< T_a [K]
-  double source_conductance = 0.0;   ///< G: sum of w h over the sources with a temperature [W/(m^2 K)]
-  double source_input = 0.0;         ///< I: sum of w h T_source, and what sources of given power bring [W/m^2]
+  double convection = 0.0;          ///< h [W/(m^2 K)]
+  double emissivity = 0.0;          ///< e
+  double ambient = 0.0;             ///< T_a [K]
+  double source_conductance = 0.0;  ///< G: sum of w h over the sources with a temperature [W/(m^2 K)]
+  double source_input = 0.0;        ///< I: sum of w h T_source, and what sources of given power bring [W/m^2]
 
   double convected(double t) const { return convection * (t - ambient); }
-  double radiated(double t) const { return emissivity * stefan_boltzmann * (signed_fourth(t) - signed_fourth(ambient)); }
+  double radiated(double t) const {
+    return emissivity * stefan_boltzmann * (signed_fourth(t) - signed_fourth(ambient));
+  }
   double from_sources(double t) const { return source_input - source_conductance * t; }
   /// Outward, all together.
   double loss(double t) const { return convected(t) + radiated(t) - from_sources(t); }
@@ -63,8 +67,8 @@ struct SurfaceExchange {
 };
 
 /// Energies that passed since the last Solver::prepare() [J] (J/m^(3 - Dim) in fewer dimensions): away by radiation and
-/// convection at the free surface, away through walls of given temperature, and in from sources. What comes in and goes out with
-/// particles is not among them.
+/// convection at the free surface, away through walls of given temperature, and in from sources. What comes in and goes
+/// out with particles is not among them.
 struct HeatLedger {
   double radiated = 0.0;
   double convected = 0.0;
@@ -80,14 +84,15 @@ struct HeatLedger {
   }
 };
 
-/// The temperature T_s of a surface that the centre of a particle, at `temperature` [K], feeds through `resistance` [m^2 K/W]:
+/// The temperature T_s of a surface that the centre of a particle, at `temperature` [K], feeds through `resistance`
+/// [m^2 K/W]:
 ///   T_s + resistance * loss(T_s) = temperature.
 double surface_temperature(const SurfaceExchange& exchange, double resistance, double temperature);
 
 /// Backward Euler over a step: the specific enthalpy H [J/kg] with
 ///   H + share * loss(T_s) = target,   share = dt A/m [m^2 s/kg],
-/// where T_s belongs to the temperature `temperature_of(H)`, which grows with H at `slope_of(H)`. Unique and stable for any share: the
-/// loss grows with H. To 1e-13 of the change, or rounding.
+/// where T_s belongs to the temperature `temperature_of(H)`, which grows with H at `slope_of(H)`. Unique and stable for
+/// any share: the loss grows with H. To 1e-13 of the change, or rounding.
 template <typename TemperatureOf, typename SlopeOf>
 double exchange_enthalpy(const SurfaceExchange& exchange, double resistance, double share, double target,
                          const TemperatureOf& temperature_of, const SlopeOf& slope_of) {

@@ -10,9 +10,11 @@ namespace smelt {
 
 /// How a property follows temperature.
 enum class ThermalLaw : std::uint8_t {
-  range,       ///< linearly in the melted fraction u from `cold` to `hot`  [P 6-3]
-  table,       ///< through points; between two of them geometrically, linearly where one of them is 0; constant beyond the ends
-  exponential  ///< reference exp(-rate (T - reference_K)), as lava codes have it [Costa & Macedonio 2005], T kept between coldest and hottest
+  range,  ///< linearly in the melted fraction u from `cold` to `hot`  [P 6-3]
+  table,  ///< through points; between two of them geometrically, linearly where one of them is 0; constant beyond the
+          ///< ends
+  exponential  ///< reference exp(-rate (T - reference_K)), as lava codes have it [Costa & Macedonio 2005], T kept
+               ///< between coldest and hottest
 };
 
 /// A property that may follow temperature.
@@ -30,8 +32,8 @@ struct ThermalRange {
 
 /// Souza Mendes-Dutra viscoplastic law  [P 6-1, de Souza Mendes & Dutra 2004]:
 ///   eta(gdot) = (1 - exp(-eta0 gdot / tau0)) (tau0/gdot + K gdot^(n-1)).
-/// The viscosity at rest eta0 is given, or follows from the jump number J = eta0 gdot1 / tau0 - 1, gdot1 = (tau0/K)^(1/n).
-/// tau0 = 0 is a power-law fluid; tau0 = 0 and n = 1 is Newtonian.
+/// The viscosity at rest eta0 is given, or follows from the jump number J = eta0 gdot1 / tau0 - 1, gdot1 =
+/// (tau0/K)^(1/n). tau0 = 0 is a power-law fluid; tau0 = 0 and n = 1 is Newtonian.
 struct Rheology {
   ThermalRange yield_stress;                   ///< tau0 [Pa]
   ThermalRange consistency{1.0, 1.0};          ///< K [Pa s^n]
@@ -40,8 +42,8 @@ struct Rheology {
   std::optional<ThermalRange> rest_viscosity;  ///< eta0 [Pa s]
 };
 
-/// Conduction, melting and what the surface gives off. `cold` and `hot`, solidus and liquidus, bound the range over which the rheology
-/// changes and latent heat is taken up, evenly.
+/// Conduction, melting and what the surface gives off. `cold` and `hot`, solidus and liquidus, bound the range over
+/// which the rheology changes and latent heat is taken up, evenly.
 struct HeatProperties {
   double diffusivity = 0.0;    ///< k = conductivity/(rho0 c_p) [m^2/s]
   double cold = 0.0;           ///< [K]

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace smelt {
 
@@ -27,7 +28,8 @@ std::vector<Vec<Dim>> axes_across(const Vec<Dim>& direction) {
   return axes;
 }
 
-/// The sites of a square lattice within `radius` of its origin, which is a site, or the middle of a cell where `between`.
+/// The sites of a square lattice within `radius` of its origin, which is a site, or the middle of a cell where
+/// `between`.
 template <int Dim>
 std::vector<Vec<Dim>> lattice_disc(const std::vector<Vec<Dim>>& axes, double radius, double spacing, bool between) {
   std::vector<Vec<Dim>> sites;
@@ -56,11 +58,14 @@ template <int Dim>
 EmitterLayers<Dim> compute_emitter_layers(const Emitter<Dim>& emitter, double particle_volume, double support_radius) {
   const double spacing = std::pow(particle_volume, 1.0 / Dim);
   if (!(emitter.radius >= spacing))
-    fail("a vent of radius {:.4g} m is narrower than two particles, which are {:.4g} m apart; widen it, or take a smaller spacing",
-         emitter.radius, spacing);
+    fail(
+        "a vent of radius {:.4g} m is narrower than two particles, which are {:.4g} m apart; widen it, or take a "
+        "smaller spacing",
+        emitter.radius, spacing);
   if (!(emitter.flow_rate > 0.0)) fail("the flow rate must be > 0, is {}", emitter.flow_rate);
   if (!(std::abs(emitter.direction.norm() - 1.0) < 1e-9)) fail("the direction must be a unit vector");
-  if (!(emitter.end > emitter.start)) fail("it must end after it starts, at {} s; it ends at {} s", emitter.start, emitter.end);
+  if (!(emitter.end > emitter.start))
+    fail("it must end after it starts, at {} s; it ends at {} s", emitter.start, emitter.end);
 
   // Of the two lattices the one whose section is nearer to the circle's.
   const auto axes = axes_across<Dim>(emitter.direction);
@@ -71,13 +76,16 @@ EmitterLayers<Dim> compute_emitter_layers(const Emitter<Dim>& emitter, double pa
     return std::abs(static_cast<double>(s.size()) * cell - section_area<Dim>(emitter.radius));
   };
   if (error(between) < error(sites)) sites.swap(between);
-  std::stable_sort(sites.begin(), sites.end(), [](const Vec<Dim>& a, const Vec<Dim>& b) { return a.squaredNorm() < b.squaredNorm(); });
+  std::stable_sort(sites.begin(), sites.end(),
+                   [](const Vec<Dim>& a, const Vec<Dim>& b) { return a.squaredNorm() < b.squaredNorm(); });
 
   EmitterLayers<Dim> layers;
   layers.speed = emitter.flow_rate / (static_cast<double>(sites.size()) * cell);
   layers.period = spacing / layers.speed;
   layers.depth = spacing * std::ceil(support_radius / spacing);
-  layers.n_particles = std::llround(emitter.flow_rate * (emitter.end - emitter.start) / particle_volume);
+  const double n_poured = emitter.flow_rate * (emitter.end - emitter.start) / particle_volume;
+  constexpr double endless = 0x1p62;  // more than any simulation gets to
+  layers.n_particles = n_poured < endless ? std::llround(n_poured) : std::numeric_limits<std::int64_t>::max();
   layers.root = spacing * std::max(1.0, std::ceil(emitter.root / spacing));
   layers.sites = std::move(sites);
   return layers;
@@ -100,9 +108,9 @@ Vec<Dim> entered_position(const Emitter<Dim>& emitter, const EmitterLayers<Dim>&
   return emitter.position + layers.sites[static_cast<std::size_t>(k % n_sites)] + along * emitter.direction;
 }
 
-#define SMELT_INSTANTIATE(Dim)                                                                                    \
-  template EmitterLayers<Dim> compute_emitter_layers<Dim>(const Emitter<Dim>&, double, double);                   \
-  template std::int64_t count_entered<Dim>(const Emitter<Dim>&, const EmitterLayers<Dim>&, double);               \
+#define SMELT_INSTANTIATE(Dim)                                                                      \
+  template EmitterLayers<Dim> compute_emitter_layers<Dim>(const Emitter<Dim>&, double, double);     \
+  template std::int64_t count_entered<Dim>(const Emitter<Dim>&, const EmitterLayers<Dim>&, double); \
   template Vec<Dim> entered_position<Dim>(const Emitter<Dim>&, const EmitterLayers<Dim>&, std::int64_t, double);
 SMELT_INSTANTIATE(1)
 SMELT_INSTANTIATE(2)

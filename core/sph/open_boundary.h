@@ -1,9 +1,9 @@
 #pragma once
 // Where particles come in and go out while a simulation runs (docs/decisions/0012-emitters.md).
 //
-// A vent is a short duct of circular section. Layers of a square lattice come in at its root behind its entry, one spacing apart, and are driven
-// through it with the velocity that the flow rate asks for; where they leave it they are free. So what is free has its support full of
-// particles that move as it does, and none appears beside it.
+// A vent is a short duct of circular section. Layers of a square lattice come in at its root behind its entry, one
+// spacing apart, and are driven through it with the velocity that the flow rate asks for; where they leave it they are
+// free. So what is free has its support full of particles that move as it does, and none appears beside it.
 
 #include "core/geometry/vec.h"
 
@@ -18,11 +18,11 @@ struct Emitter {
   Vec<Dim> position = Vec<Dim>::Zero();    ///< middle of the entry [m]
   Vec<Dim> direction = Vec<Dim>::Unit(0);  ///< of the flow, unit
   double radius = 0.0;                     ///< of the section [m]
-  double root = 0.0;                       ///< how far behind the entry layers come in, in the ground perhaps; a spacing at least [m]
-  double flow_rate = 0.0;                  ///< [m^Dim/s]
-  double start = 0.0;                      ///< when the flow enters, and [s]
-  double end = 0.0;                        ///< when it stops entering; what is in the duct still leaves it
-  double temperature = 0.0;                ///< [K]; of scenes with heat
+  double root = 0.0;         ///< how far behind the entry layers come in, in the ground perhaps; a spacing at least [m]
+  double flow_rate = 0.0;    ///< [m^Dim/s]
+  double start = 0.0;        ///< when the flow enters, and [s]
+  double end = 0.0;          ///< when it stops entering, infinity: never; what is in the duct still leaves it
+  double temperature = 0.0;  ///< [K]; of scenes with heat
   std::uint8_t material = 0;
 };
 
@@ -33,17 +33,18 @@ struct EmitterLayers {
   double speed = 0.0;           ///< flow rate over the section of the sites [m/s]
   double period = 0.0;          ///< from one layer to the next: a spacing at that speed [s]
   double root = 0.0;            ///< as the emitter's, in whole spacings [m]
-  double depth = 0.0;           ///< length of the duct from `position` on [m]: whole spacings, at least the kernel's support
+  double depth = 0.0;  ///< length of the duct from `position` on [m]: whole spacings, at least the kernel's support
   std::int64_t n_particles = 0;  ///< in all: the poured volume over that of a particle, rounded
 };
 
-/// Throws Error where the radius is below the spacing, the flow rate is not positive, the direction is no unit vector or the end is not
-/// after the start. `particle_volume` [m^Dim], `support_radius` [m].
+/// Throws Error where the radius is below the spacing, the flow rate is not positive, the direction is no unit vector
+/// or the end is not after the start. `particle_volume` [m^Dim], `support_radius` [m].
 template <int Dim>
 EmitterLayers<Dim> compute_emitter_layers(const Emitter<Dim>& emitter, double particle_volume, double support_radius);
 
-/// How many particles have entered by `time` [s]. The layer k comes in at start + (k + 1/2) periods, when half of its volume has; the last
-/// one may lack sites. So the volume entered differs from rate times time by half a layer at most, and in the end by half a particle.
+/// How many particles have entered by `time` [s]. The layer k comes in at start + (k + 1/2) periods, when half of its
+/// volume has; the last one may lack sites. So the volume entered differs from rate times time by half a layer at most,
+/// and in the end by half a particle.
 template <int Dim>
 std::int64_t count_entered(const Emitter<Dim>& emitter, const EmitterLayers<Dim>& layers, double time);
 
@@ -67,7 +68,8 @@ struct Outflow {
 /// What came and went since the start, counted in particles: whole numbers, so that no mass is lost in rounding.
 struct ParticleAccount {
   std::int32_t next_id = 0;
-  std::vector<std::int64_t> initial;  ///< of each material; empty in a scene without emitters and outflow, like the next two
+  std::vector<std::int64_t>
+      initial;  ///< of each material; empty in a scene without emitters and outflow, like the next two
   std::vector<std::int64_t> removed;  ///< of each material
   std::vector<std::int64_t> entered;  ///< of each emitter
 };

@@ -31,24 +31,26 @@ inline constexpr int lanes = static_cast<int>(hn::MaxLanes(Tag<Real>()));
 template <int Dim, typename Real>
 struct CubicSpline {
   Real inverse_h;
-  Real value_scale;     ///< sigma
-  Real gradient_scale;  ///< sigma / h^2
+  Real value_scale;                              ///< sigma
+  Real near_slope, near_constant, far_constant;  ///< 9/4, -3 and -3/4 sigma / h^2
 
   explicit CubicSpline(double h)
-      : inverse_h(static_cast<Real>(1.0 / h)),
-        value_scale(static_cast<Real>(Kernel<Dim>(h).value(0.0))),
-        gradient_scale(static_cast<Real>(Kernel<Dim>(h).value(0.0) / (h * h))) {
+      : inverse_h(static_cast<Real>(1.0 / h)), value_scale(static_cast<Real>(Kernel<Dim>(h).value(0.0))) {
     // f(0) = 1 for the cubic spline: 0.25 * 2^3 - 1.
+    const double gradient_scale = Kernel<Dim>(h).value(0.0) / (h * h);
+    near_slope = static_cast<Real>(2.25 * gradient_scale);
+    near_constant = static_cast<Real>(-3.0 * gradient_scale);
+    far_constant = static_cast<Real>(-0.75 * gradient_scale);
   }
 
   /// F = (dW/dr)/r from r^2; 0 beyond 2h, finite at r = 0.
   HWY_INLINE Simd<Real> gradient_over_r(Simd<Real> r2) const {
     const Tag<Real> d;
     const auto q = hn::Mul(hn::Sqrt(r2), hn::Set(d, inverse_h));
-    const auto near_branch = hn::MulAdd(q, hn::Set(d, Real(2.25)), hn::Set(d, Real(-3)));
+    const auto near_branch = hn::MulAdd(q, hn::Set(d, near_slope), hn::Set(d, near_constant));
     const auto a = hn::Max(hn::Sub(hn::Set(d, Real(2)), q), hn::Zero(d));
-    const auto far_branch = hn::Div(hn::Mul(hn::Mul(a, a), hn::Set(d, Real(-0.75))), q);
-    return hn::Mul(hn::Set(d, gradient_scale), hn::IfThenElse(hn::Lt(q, hn::Set(d, Real(1))), near_branch, far_branch));
+    const auto far_branch = hn::Div(hn::Mul(hn::Mul(a, a), hn::Set(d, far_constant)), q);
+    return hn::IfThenElse(hn::Lt(q, hn::Set(d, Real(1))), near_branch, far_branch);
   }
 
   /// W from r^2.

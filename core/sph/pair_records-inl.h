@@ -9,8 +9,9 @@
 #include "core/sph/pair_kernels-inl.h"
 #include "core/sph/pair_sums.h"
 
-#include <algorithm>
 #include <hwy/highway.h>
+
+#include <algorithm>
 #include <type_traits>
 
 HWY_BEFORE_NAMESPACE();
@@ -49,25 +50,48 @@ HWY_INLINE void load_four_fields(const float* const (&at)[n_lanes], int first, S
   for (int k = 0; k < 4; ++k) fields[k] = rows[k];
 }
 
+// The plain forms of these shuffles warn of a value that is not initialised (GCC 12); with a full mask they are the
+// same.
+
+/// The even blocks of four lanes of `low`, then those of `high`.
+HWY_INLINE Simd<float> even_blocks(Simd<float> low, Simd<float> high) {
+#if HWY_TARGET <= HWY_AVX3
+  return Simd<float>{_mm512_maskz_shuffle_f32x4(0xFFFF, low.raw, high.raw, _MM_SHUFFLE(2, 0, 2, 0))};
+#else
+  return hn::ConcatLowerLower(Tag<float>(), high, low);
+#endif
+}
+
+/// The odd ones.
+HWY_INLINE Simd<float> odd_blocks(Simd<float> low, Simd<float> high) {
+#if HWY_TARGET <= HWY_AVX3
+  return Simd<float>{_mm512_maskz_shuffle_f32x4(0xFFFF, low.raw, high.raw, _MM_SHUFFLE(3, 1, 3, 1))};
+#else
+  return hn::ConcatUpperUpper(Tag<float>(), high, low);
+#endif
+}
+
 /// Fields [first, first + 8): half the loads of twice four.
 template <int n_lanes>
 HWY_INLINE void load_eight_fields(const float* const (&at)[n_lanes], int first, Simd<float>* fields) {
   const Tag<float> d;
   const auto record = [&](int lane) HWY_ATTR { return hn::LoadU(hn::FixedTag<float, 8>(), at[lane] + first); };
-  Simd<float> rows[8];
-  for (int k = 0; k < 8; ++k) {
-    if constexpr (n_lanes == 16)
-      rows[k] = hn::Combine(d, record(k + 8), record(k));
-    else
-      rows[k] = record(k);
-  }
-  transpose_blocks(rows[0], rows[1], rows[2], rows[3]);
-  transpose_blocks(rows[4], rows[5], rows[6], rows[7]);
-  // Blocks of row k: field k of neighbours 0 to 3, field k + 4 of them, and so on for 8 to 11; of row k + 4, of 4 to 7
-  // and 12 to 15.
+  Simd<float> low[4], high[4];  // the first half of the neighbours, and the second
   for (int k = 0; k < 4; ++k) {
-    fields[k] = hn::OddEvenBlocks(hn::SwapAdjacentBlocks(rows[k + 4]), rows[k]);
-    fields[k + 4] = hn::OddEvenBlocks(rows[k + 4], hn::SwapAdjacentBlocks(rows[k]));
+    if constexpr (n_lanes == 16) {
+      low[k] = hn::Combine(d, record(k + 4), record(k));
+      high[k] = hn::Combine(d, record(k + 12), record(k + 8));
+    } else {
+      low[k] = record(k);
+      high[k] = record(k + 4);
+    }
+  }
+  transpose_blocks(low[0], low[1], low[2], low[3]);
+  transpose_blocks(high[0], high[1], high[2], high[3]);
+  // Row k has field k of four neighbours in its even blocks, field k + 4 of them in its odd ones.
+  for (int k = 0; k < 4; ++k) {
+    fields[k] = even_blocks(low[k], high[k]);
+    fields[k + 4] = odd_blocks(low[k], high[k]);
   }
 }
 

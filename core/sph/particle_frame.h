@@ -18,11 +18,11 @@ struct ParticleFrame {
   std::vector<Vec3f> rest;         ///< where it was in the unmoved material [m], or empty
   std::vector<std::int32_t> id;    ///< stable through a shot
 
-  double mass = 0.0;               ///< of one particle [kg]
-  double spacing = 0.0;            ///< initial distance between particles [m]
-  double smoothing_length = 0.0;   ///< h of the simulation [m]; the kernel's support radius is 2 h
-  std::int32_t frame = 0;          ///< counted from 1
-  double time = 0.0;               ///< [s]
+  double mass = 0.0;              ///< of one particle [kg]
+  double spacing = 0.0;           ///< initial distance between particles [m]
+  double smoothing_length = 0.0;  ///< h of the simulation [m]; the kernel's support radius is 2 h
+  std::int32_t frame = 0;         ///< counted from 1
+  double time = 0.0;              ///< [s]
 
   std::size_t size() const { return position.size(); }
 };

@@ -12,7 +12,7 @@ namespace smelt {
 
 /// Independent entries of a symmetric Dim x Dim tensor (order in docs/conventions.md).
 template <int Dim>
-inline constexpr int n_symmetric = Dim * (Dim + 1) / 2;
+inline constexpr int n_symmetric = Dim*(Dim + 1) / 2;
 
 template <int Dim>
 using Symmetric = Eigen::Matrix<double, n_symmetric<Dim>, 1>;
@@ -47,21 +47,21 @@ Symmetric<Dim> to_symmetric(const Mat<Dim>& m) {
   return packed;
 }
 
-/// Structure of arrays, one entry per particle. Double precision throughout, so that slow creep and small changes of density
-/// do not vanish in rounding. Optional fields are empty where the scene does not use them.
+/// Structure of arrays, one entry per particle. Double precision throughout, so that slow creep and small changes of
+/// density do not vanish in rounding. Optional fields are empty where the scene does not use them.
 template <int Dim>
 struct Particles {
-  std::vector<std::int32_t> id;            ///< stable through a shot, none twice
-  std::vector<std::uint8_t> material;      ///< index into the materials; empty where there is only one
-  std::vector<Vec<Dim>> position;          ///< [m]
-  std::vector<Vec<Dim>> velocity;          ///< [m/s]
-  std::vector<double> density;             ///< [kg/m^3]
-  std::vector<double> temperature;         ///< [K], or empty
-  std::vector<double> enthalpy;            ///< specific, from the solid at cold_K on [J/kg]; empty without latent heat
-  std::vector<Symmetric<Dim>> stress;      ///< extra stress S [Pa], or empty in an inviscid scene
-  std::vector<float> viscosity;            ///< eta = |S| / gdot at the last step [Pa s], or empty in an inviscid scene
-  std::vector<double> internal_energy;     ///< of an ideal gas, specific, e [J/kg]; else empty
-  std::vector<std::uint8_t> driven;        ///< 1 + the emitter in whose duct it is, or 0; empty in a scene without emitters
+  std::vector<std::int32_t> id;         ///< stable through a shot, none twice
+  std::vector<std::uint8_t> material;   ///< index into the materials; empty where there is only one
+  std::vector<Vec<Dim>> position;       ///< [m]
+  std::vector<Vec<Dim>> velocity;       ///< [m/s]
+  std::vector<double> density;          ///< [kg/m^3]
+  std::vector<double> temperature;      ///< [K], or empty
+  std::vector<double> enthalpy;         ///< specific, from the solid at cold_K on [J/kg]; empty without latent heat
+  std::vector<Symmetric<Dim>> stress;   ///< extra stress S [Pa], or empty in an inviscid scene
+  std::vector<float> viscosity;         ///< eta = |S| / gdot at the last step [Pa s], or empty in an inviscid scene
+  std::vector<double> internal_energy;  ///< of an ideal gas, specific, e [J/kg]; else empty
+  std::vector<std::uint8_t> driven;  ///< 1 + the emitter in whose duct it is, or 0; empty in a scene without emitters
 
   std::size_t size() const { return position.size(); }
 };

@@ -17,8 +17,8 @@ namespace smelt {
 namespace HWY_NAMESPACE {
 
 template <typename PairKernel, int Dim, typename Real>
-void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, double h, std::size_t begin,
-                            std::size_t end, PressureGradientSums<Dim, Real>* sums) {
+void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, double h,
+                            std::size_t begin, std::size_t end, PressureGradientSums<Dim, Real>* sums) {
   const Tag<Real> d;
   const PairKernel kernel(h);
   using Fields = PairFields<Dim, Real>;
@@ -49,8 +49,8 @@ void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const Neighbour
 }
 
 template <typename PairKernel, int Dim, typename Real>
-void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vector<Real>& gradients, const NeighbourLists& lists,
-                             double h, std::size_t begin, std::size_t end, Real* sums) {
+void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vector<Real>& gradients,
+                             const NeighbourLists& lists, double h, std::size_t begin, std::size_t end, Real* sums) {
   const Tag<Real> d;
   const PairKernel kernel(h);
   constexpr int stride = gradient_stride<Dim>;
@@ -81,20 +81,21 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
   }
 }
 
-#define SMELT_INSTANTIATE(Dim, Real, suffix)                                                                              \
-  inline void pressure_gradient_sums_##suffix(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,           \
-                                              KernelType type, double h, std::size_t begin, std::size_t end,              \
-                                              PressureGradientSums<Dim, Real>* sums) {                                    \
-    with_kernel<Dim, Real>(type, [&](auto kernel) HWY_ATTR {                                                              \
-      pressure_gradient_sums<typename decltype(kernel)::type, Dim, Real>(fields, lists, h, begin, end, sums);             \
-    });                                                                                                                   \
-  }                                                                                                                       \
-  inline void pressure_diffusion_sums_##suffix(const PairFields<Dim, Real>& fields, const std::vector<Real>& gradients,   \
-                                               const NeighbourLists& lists, KernelType type, double h, std::size_t begin, \
-                                               std::size_t end, Real* sums) {                                             \
-    with_kernel<Dim, Real>(type, [&](auto kernel) HWY_ATTR {                                                              \
-      pressure_diffusion_sums<typename decltype(kernel)::type, Dim, Real>(fields, gradients, lists, h, begin, end, sums); \
-    });                                                                                                                   \
+#define SMELT_INSTANTIATE(Dim, Real, suffix)                                                                       \
+  inline void pressure_gradient_sums_##suffix(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,    \
+                                              KernelType type, double h, std::size_t begin, std::size_t end,       \
+                                              PressureGradientSums<Dim, Real>* sums) {                             \
+    with_kernel<Dim, Real>(type, [&](auto kernel) HWY_ATTR {                                                       \
+      pressure_gradient_sums<typename decltype(kernel)::type, Dim, Real>(fields, lists, h, begin, end, sums);      \
+    });                                                                                                            \
+  }                                                                                                                \
+  inline void pressure_diffusion_sums_##suffix(                                                                    \
+      const PairFields<Dim, Real>& fields, const std::vector<Real>& gradients, const NeighbourLists& lists,        \
+      KernelType type, double h, std::size_t begin, std::size_t end, Real* sums) {                                 \
+    with_kernel<Dim, Real>(type, [&](auto kernel) HWY_ATTR {                                                       \
+      pressure_diffusion_sums<typename decltype(kernel)::type, Dim, Real>(fields, gradients, lists, h, begin, end, \
+                                                                          sums);                                   \
+    });                                                                                                            \
   }
 SMELT_INSTANTIATE(3, float, 3f)
 SMELT_INSTANTIATE(3, double, 3d)

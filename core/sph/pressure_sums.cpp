@@ -3,28 +3,30 @@
 #define HWY_DISABLED_TARGETS HWY_AVX3_DL
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/sph/pressure_sums.cpp"
+// clang-format off
 #include <hwy/foreach_target.h>  // must come before highway.h
 
 #include "core/sph/pressure_sums-inl.h"
+// clang-format on
 
 #if HWY_ONCE
 namespace smelt {
 
-#define SMELT_DISPATCH(Dim, Real, suffix)                                                                                        \
-  HWY_EXPORT(pressure_gradient_sums_##suffix);                                                                                   \
-  HWY_EXPORT(pressure_diffusion_sums_##suffix);                                                                                  \
-  template <>                                                                                                                    \
-  void compute_pressure_gradient_sums<Dim, Real>(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,               \
-                                                 KernelType kernel, double smoothing_length, std::size_t begin, std::size_t end, \
-                                                 PressureGradientSums<Dim, Real>* sums) {                                        \
-    HWY_DYNAMIC_DISPATCH(pressure_gradient_sums_##suffix)(fields, lists, kernel, smoothing_length, begin, end, sums);            \
-  }                                                                                                                              \
-  template <>                                                                                                                    \
-  void compute_pressure_diffusion_sums<Dim, Real>(const PairFields<Dim, Real>& fields, const std::vector<Real>& gradients,       \
-                                                  const NeighbourLists& lists, KernelType kernel, double smoothing_length,       \
-                                                  std::size_t begin, std::size_t end, Real* sums) {                              \
-    HWY_DYNAMIC_DISPATCH(pressure_diffusion_sums_##suffix)                                                                       \
-    (fields, gradients, lists, kernel, smoothing_length, begin, end, sums);                                                      \
+#define SMELT_DISPATCH(Dim, Real, suffix)                                                                             \
+  HWY_EXPORT(pressure_gradient_sums_##suffix);                                                                        \
+  HWY_EXPORT(pressure_diffusion_sums_##suffix);                                                                       \
+  template <>                                                                                                         \
+  void compute_pressure_gradient_sums<Dim, Real>(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,    \
+                                                 KernelType kernel, double smoothing_length, std::size_t begin,       \
+                                                 std::size_t end, PressureGradientSums<Dim, Real>* sums) {            \
+    HWY_DYNAMIC_DISPATCH(pressure_gradient_sums_##suffix)(fields, lists, kernel, smoothing_length, begin, end, sums); \
+  }                                                                                                                   \
+  template <>                                                                                                         \
+  void compute_pressure_diffusion_sums<Dim, Real>(                                                                    \
+      const PairFields<Dim, Real>& fields, const std::vector<Real>& gradients, const NeighbourLists& lists,           \
+      KernelType kernel, double smoothing_length, std::size_t begin, std::size_t end, Real* sums) {                   \
+    HWY_DYNAMIC_DISPATCH(pressure_diffusion_sums_##suffix)                                                            \
+    (fields, gradients, lists, kernel, smoothing_length, begin, end, sums);                                           \
   }
 SMELT_DISPATCH(3, float, 3f)
 SMELT_DISPATCH(3, double, 3d)

@@ -35,20 +35,26 @@ double table_value(const ThermalRange& table, double temperature) {
 
 double value_at(const ThermalRange& property, double u, double temperature) {
   switch (property.law) {
-    case ThermalLaw::range: return (1.0 - u) * property.cold + u * property.hot;
-    case ThermalLaw::table: return table_value(property, temperature);
+    case ThermalLaw::range:
+      return (1.0 - u) * property.cold + u * property.hot;
+    case ThermalLaw::table:
+      return table_value(property, temperature);
     case ThermalLaw::exponential:
       return property.reference *
-             std::exp(-property.rate * (std::clamp(temperature, property.coldest, property.hottest) - property.reference_temperature));
+             std::exp(-property.rate *
+                      (std::clamp(temperature, property.coldest, property.hottest) - property.reference_temperature));
   }
   throw InternalError("value_at: unknown law");
 }
 
 bool is_zero(const ThermalRange& property) {
   switch (property.law) {
-    case ThermalLaw::range: return property.cold == 0.0 && property.hot == 0.0;
-    case ThermalLaw::table: return std::all_of(property.value.begin(), property.value.end(), [](double v) { return v == 0.0; });
-    case ThermalLaw::exponential: return property.reference == 0.0;
+    case ThermalLaw::range:
+      return property.cold == 0.0 && property.hot == 0.0;
+    case ThermalLaw::table:
+      return std::all_of(property.value.begin(), property.value.end(), [](double v) { return v == 0.0; });
+    case ThermalLaw::exponential:
+      return property.reference == 0.0;
   }
   throw InternalError("is_zero: unknown law");
 }

@@ -24,8 +24,10 @@ double value_at(const ThermalRange& property, double u, double temperature);
 /// Whether a property is 0 at every temperature.
 bool is_zero(const ThermalRange& property);
 
-/// The law's parameters at melted fraction `u` and `temperature` [K], which only tables and exponentials need; eta0 from J where J is given.
-FlowCurve flow_curve_at(const Rheology& rheology, double u, double temperature = std::numeric_limits<double>::quiet_NaN());
+/// The law's parameters at melted fraction `u` and `temperature` [K], which only tables and exponentials need; eta0
+/// from J where J is given.
+FlowCurve flow_curve_at(const Rheology& rheology, double u,
+                        double temperature = std::numeric_limits<double>::quiet_NaN());
 
 /// tau(gdot) = eta(gdot) gdot [Pa] for gdot >= 0 [1/s].
 double shear_stress(const FlowCurve& curve, double shear_rate);

@@ -1,8 +1,9 @@
 #pragma once
 // A rigid body: an obstacle of given mass that what it hits pushes back.
 //
-// Angular quantities are skew matrices as in core/geometry/pose.h: the angular momentum of a point mass is L = m (v x^T - x v^T), a torque
-// F x^T - x F^T. With the second moment J = sum m x x^T of the body about its centre, L = Omega J + J Omega.
+// Angular quantities are skew matrices as in core/geometry/pose.h: the angular momentum of a point mass is L = m (v x^T
+// - x v^T), a torque F x^T - x F^T. With the second moment J = sum m x x^T of the body about its centre, L = Omega J +
+// J Omega.
 
 #include "core/geometry/mass_properties.h"
 #include "core/geometry/pose.h"
@@ -27,10 +28,10 @@ struct Load {
 
 template <int Dim>
 struct RigidBody {
-  double mass = 0.0;                             ///< [kg]
-  Vec<Dim> rest_centre = Vec<Dim>::Zero();       ///< of mass, where the body is at rest [m]
-  Mat<Dim> axes = Mat<Dim>::Identity();          ///< principal ones at rest, in columns
-  Vec<Dim> moments = Vec<Dim>::Zero();           ///< eigenvalues of J [kg m^2]
+  double mass = 0.0;                        ///< [kg]
+  Vec<Dim> rest_centre = Vec<Dim>::Zero();  ///< of mass, where the body is at rest [m]
+  Mat<Dim> axes = Mat<Dim>::Identity();     ///< principal ones at rest, in columns
+  Vec<Dim> moments = Vec<Dim>::Zero();      ///< eigenvalues of J [kg m^2]
   BodyState<Dim> state;
   Load<Dim> load;  ///< of the fluid, without gravity
 
@@ -53,7 +54,8 @@ struct RigidBody {
   double kinetic_energy() const;  ///< [J]
 };
 
-/// A body of the volume that the facets bound, at rest where they are, with a mass [kg] spread evenly. Throws Error where they bound none.
+/// A body of the volume that the facets bound, at rest where they are, with a mass [kg] spread evenly. Throws Error
+/// where they bound none.
 template <int Dim>
 RigidBody<Dim> make_rigid_body(std::span<const Simplex<Dim>> facets, double mass);
 
@@ -61,8 +63,8 @@ RigidBody<Dim> make_rigid_body(std::span<const Simplex<Dim>> facets, double mass
 template <int Dim>
 void kick_body(RigidBody<Dim>& body, const Vec<Dim>& gravity, double dt);
 
-/// Where it is after dt [s] of free flight: the centre goes straight, and it turns by the spin that its angular momentum gives it at the middle
-/// of the step. Second order in dt; the angular momentum is kept exactly.
+/// Where it is after dt [s] of free flight: the centre goes straight, and it turns by the spin that its angular
+/// momentum gives it at the middle of the step. Second order in dt; the angular momentum is kept exactly.
 template <int Dim>
 BodyState<Dim> drift_body(const RigidBody<Dim>& body, double dt);
 

@@ -25,7 +25,9 @@ bool inviscid(const Rheology& r) {
 HeatTerms heat_terms(const std::vector<Material>& materials) {
   const auto conducts = [](const Material& m) { return m.heat.has_value(); };
   if (std::none_of(materials.begin(), materials.end(), conducts)) return HeatTerms::none;
-  const auto like_first = [&](const Material& m) { return m.heat && materials.front().heat && conductivity(m) == conductivity(materials.front()); };
+  const auto like_first = [&](const Material& m) {
+    return m.heat && materials.front().heat && conductivity(m) == conductivity(materials.front());
+  };
   return std::all_of(materials.begin(), materials.end(), like_first) ? HeatTerms::uniform : HeatTerms::mixed;
 }
 
@@ -39,57 +41,47 @@ double particle_radius(double volume) {
 }  // namespace
 
 template <int Dim, typename Real>
-Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<Material> materials, Colliders<Dim> colliders,
-                          Particles<Dim> particles, ParticleAccount account)
+Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<Material> materials,
+                          Colliders<Dim> colliders, Particles<Dim> particles, ParticleAccount account)
     : parameters_(parameters),
       materials_(std::move(materials)),
       colliders_(std::move(colliders)),
       particles_(std::move(particles)),
       account_(std::move(account)) {
   const std::size_t n = particles_.size();
-  if (n == 0 && parameters_.emitters.empty()) fail("simulation: there are no particles");
-  terms_.gas = parameters_.equation_of_state.law == PressureLaw::ideal_gas;
-  if (!(parameters_.particle_volume > 0.0) || !(parameters_.smoothing_length > 0.0) || !(parameters_.sound_speed > 0.0 || terms_.gas))
-    fail("simulation: particle volume, smoothing length and sound speed must be > 0, are {}, {}, {}",
-         parameters_.particle_volume, parameters_.smoothing_length, parameters_.sound_speed);
-  spacing_ = std::pow(parameters_.particle_volume, 1.0 / Dim);
   CHECK_EQ(particles_.density.size(), n);
-  terms_.pair.kernel = parameters_.kernel;
-  for (const Material& m : materials_) {
-    if (!inviscid(m.rheology)) terms_.pair.stress = true;
-  }
-  terms_.pair.heat = heat_terms(materials_);
-  terms_.pair.xsph = parameters_.xsph > 0.0;
-  for (int a = 0; a < Dim; ++a) terms_.periodic = terms_.periodic || is_periodic(parameters_.period, a);
+  choose_terms();
+  check_parameters();
+  spacing_ = std::pow(parameters_.particle_volume, 1.0 / Dim);
   check_period<Dim>(parameters_.period, list_reach(least_skin()));
-  terms_.relaxed = terms_.pair.stress && parameters_.shear_wave_speed > 0.0;
-  terms_.pair.hourglass = terms_.pair.stress && parameters_.hourglass_control > 0.0;
-  terms_.diffusion = parameters_.density_diffusion > 0.0;
-  if (terms_.diffusion && parameters_.density != DensityForm::continuity)
-    fail("simulation: density diffusion goes with the continuity equation; a density that is a sum has nothing to diffuse (set it to 0)");
-  if (parameters_.corrected_divergence && (!terms_.pair.stress || parameters_.density != DensityForm::continuity))
-    fail("simulation: the corrected divergence needs a material with a viscosity, and the continuity equation for the density");
   CHECK_EQ(particles_.temperature.size(), terms_.pair.has_heat() ? n : 0);
+  CHECK_EQ(particles_.internal_energy.size(), terms_.gas ? n : 0);
   set_up_heat();
   if (terms_.pair.stress) {
     particles_.stress.resize(n, Symmetric<Dim>::Zero());
     particles_.viscosity.resize(n, 0.0F);
   }
-  CHECK_EQ(particles_.internal_energy.size(), terms_.gas ? n : 0);
-  if (terms_.gas && (terms_.pair.stress || terms_.pair.has_heat())) fail("simulation: an ideal gas has no viscosity and conducts no heat");
-  if (terms_.gas && !(parameters_.equation_of_state.adiabatic_index > 1.0))
-    fail("simulation: the adiabatic index must be > 1, is {}", parameters_.equation_of_state.adiabatic_index);
-  if (!terms_.gas && parameters_.quadratic_artificial_viscosity != 0.0)
-    fail("simulation: quadratic artificial viscosity is for an ideal gas; shocks in liquids are weak");
-  if (terms_.gas && (colliders_.has_walls() || parameters_.density_diffusion > 0.0))
-    fail("simulation: walls and density diffusion are for liquids, not for an ideal gas");
   if (colliders_.has_walls())
-    walls_.emplace(WallKernel<Dim>(parameters_.smoothing_length, parameters_.kernel),
-                   spacing_,
+    walls_.emplace(WallKernel<Dim>(parameters_.smoothing_length, parameters_.kernel), spacing_,
                    Colliders<Dim>::wall_guard * particle_radius<Dim>(parameters_.particle_volume));
   fields_.stride = PairFields<Dim, Real>::stride_of(terms_.pair.stress);
   open_boundaries();
   resize_derived();
+}
+
+/// What this scene needs of the equations, and so of memory and time.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::choose_terms() {
+  terms_.gas = parameters_.equation_of_state.law == PressureLaw::ideal_gas;
+  terms_.pair.kernel = parameters_.kernel;
+  terms_.pair.stress =
+      std::any_of(materials_.begin(), materials_.end(), [](const Material& m) { return !inviscid(m.rheology); });
+  terms_.pair.heat = heat_terms(materials_);
+  terms_.pair.xsph = parameters_.xsph > 0.0;
+  for (int a = 0; a < Dim; ++a) terms_.periodic = terms_.periodic || is_periodic(parameters_.period, a);
+  terms_.relaxed = terms_.pair.stress && parameters_.shear_wave_speed > 0.0;
+  terms_.pair.hourglass = terms_.pair.stress && parameters_.hourglass_control > 0.0;
+  terms_.diffusion = parameters_.density_diffusion > 0.0;
 }
 
 /// All that is kept per particle beside the state.
@@ -104,7 +96,7 @@ void Solver<Dim, Real>::resize_derived() {
   if (terms_.exchange) free_surface_area_.resize(n, 0.0);
 }
 
-// ---------------------------------------------------------------------------------------------------------- the algorithm
+// ------------------------------------------------------------------------------------------------------- the algorithm
 
 template <int Dim, typename Real>
 void Solver<Dim, Real>::prepare(double time) {
@@ -125,14 +117,7 @@ void Solver<Dim, Real>::prepare(double time) {
 template <int Dim, typename Real>
 TimeStep Solver<Dim, Real>::step(double remaining, double time) {
   const TimeStep limit = find_time_step(remaining, time);
-  if (!(limit.dt >= parameters_.min_time_step))
-    throw DivergedError(fmt::format(
-        "the time step collapsed to {:.3g} s (floor {:.3g} s) at t = {:.6g} s, limited by the {} term; lower the {} or raise "
-        "[time_step] min_s",
-        limit.dt, parameters_.min_time_step, time, time_step_term_names[static_cast<std::size_t>(limit.term)],
-        limit.term == TimeStepTerm::viscous             ? "viscosity"
-        : limit.term == TimeStepTerm::density_diffusion ? "density diffusion"
-                                                        : "sound speed"));
+  if (!(limit.dt >= parameters_.min_time_step)) fail_at_step(limit, time);
   const TimeStep step = fit_to_frame(limit, remaining);
   const double dt = step.dt;
 
@@ -168,10 +153,10 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
   return step;
 }
 
-// ------------------------------------------------------------------------------------------------------------- neighbours
+// ---------------------------------------------------------------------------------------------------------- neighbours
 
-/// Pairs cost P (1 + skin/kappa)^3 a step, searches S/(skin h/2 way). With S about twice P, as measured on a melting heap, the sum is
-/// least about here. In a periodic box the reach is bounded by its size.
+/// Pairs cost P (1 + skin/kappa)^3 a step, searches S/(skin h/2 way). With S about twice P, as measured on a melting
+/// heap, the sum is least about here. In a periodic box the reach is bounded by its size.
 template <int Dim, typename Real>
 double Solver<Dim, Real>::best_skin(double way) const {
   if (terms_.periodic || parameters_.skin) return least_skin();
@@ -206,7 +191,8 @@ void Solver<Dim, Real>::search_neighbours(double skin) {
   if (walls_ && terms_.periodic) walls_->reset(n);
   if (walls_ && !terms_.periodic) walls_->reorder(order, scratch.subspan(for_order));
   if (terms_.periodic)
-    images_ = build_periodic_neighbour_lists<Dim>(parameters_.period, particles_.position, particles_.id, radius, pair_lanes<Real>, lists_);
+    images_ = build_periodic_neighbour_lists<Dim>(parameters_.period, particles_.position, particles_.id, radius,
+                                                  pair_lanes<Real>, lists_);
   else
     build_neighbour_lists<Dim>(particles_.position, radius, radius, pair_lanes<Real>, lists_);
   // The middle of the particles: what single precision resolves there is relative to their extent.
@@ -215,16 +201,18 @@ void Solver<Dim, Real>::search_neighbours(double skin) {
   ++n_searches_;
 }
 
-// ----------------------------------------------------------------------------------------------------------------- forces
+// -------------------------------------------------------------------------------------------------------------- forces
 
 template <int Dim, typename Real>
 void Solver<Dim, Real>::evaluate_forces() {
   const ForceParameters force{parameters_.smoothing_length, parameters_.artificial_viscosity, parameters_.sound_speed};
-  const GasForceParameters gas{parameters_.smoothing_length, parameters_.artificial_viscosity, parameters_.quadratic_artificial_viscosity};
+  const GasForceParameters gas{parameters_.smoothing_length, parameters_.artificial_viscosity,
+                               parameters_.quadratic_artificial_viscosity};
   parallel_blocks(particles_.size(), [&](std::size_t begin, std::size_t end) {
     std::array<std::array<Real, Dim>, block_size> sums;
     if (terms_.gas)
-      compute_gas_force_sums<Dim, Real>(fields_, lists_, terms_.pair.kernel, gas, begin, end, sums.data(), energy_rate_.data() + begin);
+      compute_gas_force_sums<Dim, Real>(fields_, lists_, terms_.pair.kernel, gas, begin, end, sums.data(),
+                                        energy_rate_.data() + begin);
     else
       compute_force_sums<Dim, Real>(fields_, lists_, terms_.pair, force, begin, end, sums.data());
     for (std::size_t i = begin; i < end; ++i)
@@ -248,7 +236,8 @@ void Solver<Dim, Real>::apply_wall_forces(std::size_t slot) {
   Mat<Dim> corrected_stress = Mat<Dim>::Zero();
   if (terms_.pair.stress)
     for (int a = 0; a < Dim; ++a)
-      for (int b = 0; b < Dim; ++b) corrected_stress(a, b) = fields_.record(i)[PairFields<Dim, Real>::stress_at + a * Dim + b];
+      for (int b = 0; b < Dim; ++b)
+        corrected_stress(a, b) = fields_.record(i)[PairFields<Dim, Real>::stress_at + a * Dim + b];
   Vec<Dim> force = specific_force_[i].template cast<double>();
   for (const WallContact<Dim>& contact : wall.contacts) {
     const PlacedObstacle<Dim>& placed = colliders_.placed()[contact.obstacle];
@@ -278,7 +267,7 @@ void Solver<Dim, Real>::sum_body_loads() {
   colliders_.set_body_loads(loads);
 }
 
-// -------------------------------------------------------------------------------------------------------------- leap-frog
+// ----------------------------------------------------------------------------------------------------------- leap-frog
 
 template <int Dim, typename Real>
 Vec<Dim> Solver<Dim, Real>::acceleration(std::size_t i) const {
@@ -288,8 +277,7 @@ Vec<Dim> Solver<Dim, Real>::acceleration(std::size_t i) const {
 
 template <int Dim, typename Real>
 void Solver<Dim, Real>::kick(double dt) {
-  parallel_for_each(particles_.size(),
-                    [&](std::size_t i) { particles_.velocity[i] += dt * acceleration(i); });
+  parallel_for_each(particles_.size(), [&](std::size_t i) { particles_.velocity[i] += dt * acceleration(i); });
   if (terms_.gas)
     parallel_for_each(particles_.size(), [&](std::size_t i) { particles_.internal_energy[i] += dt * energy_rate_[i]; });
   if (colliders_.has_bodies()) colliders_.kick_bodies(parameters_.gravity, dt);
@@ -337,11 +325,14 @@ void Solver<Dim, Real>::drift(double dt) {
   step_way_ = *std::max_element(farthest.begin(), farthest.end());
   travelled_ += step_way_;
   travelled_at_surface_ += step_way_;
+  // Walls do not come along.
+  if (walls_) travelled_at_surface_ += together.norm() + colliders_.step_way();
 }
 
 /// Returns its way [m].
 template <int Dim, typename Real>
-Vec<Dim> Solver<Dim, Real>::drift_particle(std::size_t i, double radius, double dt, std::vector<ParticleHit<Dim>>* hits) {
+Vec<Dim> Solver<Dim, Real>::drift_particle(std::size_t i, double radius, double dt,
+                                           std::vector<ParticleHit<Dim>>* hits) {
   Vec<Dim>& velocity = particles_.velocity[i];
   // XSPH moves particles with a smoothed velocity and leaves the velocity itself alone  [Monaghan 1989].
   Vec<Dim> transport = velocity;

@@ -24,37 +24,43 @@ namespace smelt {
 
 /// How density is had.
 enum class DensityForm {
-  continuity,           ///< d rho_i/dt = sum m_j v_ij . grad_w_ij  [P 4-37]: for free surfaces
-  summation,            ///< rho_i = sum m_j W_ij, the particle itself included  [S 4.19]: never drifts, but falls off towards a free surface
+  continuity,  ///< d rho_i/dt = sum m_j v_ij . grad_w_ij  [P 4-37]: for free surfaces
+  summation,   ///< rho_i = sum m_j W_ij, the particle itself included  [S 4.19]: never drifts, but falls off towards a
+               ///< free surface
   normalised_summation  ///< that over sum V_j W_ij with V_j = m_j / sum m_k W_jk  [S 4.20]: falls off less
 };
 
 template <int Dim>
 struct SolverParameters {
-  double particle_volume = 0.0;     ///< at rest [m^Dim]; a particle's mass is its material's density times this
-  double smoothing_length = 0.0;    ///< h [m]
+  double particle_volume = 0.0;   ///< at rest [m^Dim]; a particle's mass is its material's density times this
+  double smoothing_length = 0.0;  ///< h [m]
   KernelType kernel = KernelType::cubic_spline;
   Vec<Dim> gravity = Vec<Dim>::Zero();  ///< [m/s^2]
-  double sound_speed = 0.0;         ///< c [m/s] at rest, of the equation of state; an ideal gas has its own and needs none
+  double sound_speed = 0.0;  ///< c [m/s] at rest, of the equation of state; an ideal gas has its own and needs none
   EquationOfState equation_of_state;
   DensityForm density = DensityForm::continuity;
-  double shear_wave_speed = 0.0;    ///< sqrt(G/rho0) of the relaxed stress [m/s]; 0: stress follows the strain rate at once
-  double artificial_viscosity = 0.0;  ///< alpha of [P 6-15]
+  double shear_wave_speed =
+      0.0;  ///< sqrt(G/rho0) of the relaxed stress [m/s]; 0: stress follows the strain rate at once
+  double artificial_viscosity = 0.0;            ///< alpha of [P 6-15]
   double quadratic_artificial_viscosity = 0.0;  ///< beta of [S 4.40], of an ideal gas alone
-  double density_diffusion = 0.0;     ///< delta of [Antuono 2010], on what pressure gradients do not explain; 0.1 to 0.5
-  double hourglass_control = 0.0;     ///< share of the viscosity that acts on motions no gradient sees, 0 to 1; of scenes with a stress
-  double xsph = 0.0;                ///< epsilon of [P 6-16]
-  /// Density changes with the divergence of the corrected velocity gradient, exact at a free surface (docs/decisions/0015-thin-flows.md).
+  double density_diffusion = 0.0;  ///< delta of [Antuono 2010], on what pressure gradients do not explain; 0.1 to 0.5
+  double hourglass_control =
+      0.0;            ///< share of the viscosity that acts on motions no gradient sees, 0 to 1; of scenes with a stress
+  double xsph = 0.0;  ///< epsilon of [P 6-16]
+  /// Density changes with the divergence of the corrected velocity gradient, exact at a free surface
+  /// (docs/decisions/0015-thin-flows.md).
   bool corrected_divergence = false;
-  double courant = 0.25;            ///< C of the time step
-  double min_time_step = 1e-9;      ///< [s]; a smaller one is an error, not a slower simulation
-  /// Repeats along each axis whose upper end is above its lower one [m]; empty: none. A particle that leaves through a face comes in
-  /// through the opposite one at the next neighbour search. Obstacles do not repeat: they reach beyond the faces they cross.
+  double courant = 0.25;        ///< C of the time step
+  double min_time_step = 1e-9;  ///< [s]; a smaller one is an error, not a slower simulation
+  /// Repeats along each axis whose upper end is above its lower one [m]; empty: none. A particle that leaves through a
+  /// face comes in through the opposite one at the next neighbour search. Obstacles do not repeat: they reach beyond
+  /// the faces they cross.
   Box<Dim> period;
-  std::optional<Ambient> ambient;   ///< what the free surface loses heat to; absent: nothing
+  std::optional<Ambient> ambient;             ///< what the free surface loses heat to; absent: nothing
   std::vector<HeatSource<Dim>> heat_sources;  ///< what heats the free surface
-  Box<Dim> domain;                  ///< a particle that leaves it has escaped: an error; empty box: no such check
-  /// Reach of the neighbour lists beyond the support, in smoothing lengths; absent: as the particles' motion makes cheapest.
+  Box<Dim> domain;  ///< a particle that leaves it has escaped: an error; empty box: no such check
+  /// Reach of the neighbour lists beyond the support, in smoothing lengths; absent: as the particles' motion makes
+  /// cheapest.
   std::optional<double> skin;
   std::vector<Emitter<Dim>> emitters;  ///< with the continuity equation alone, up to 255
   std::vector<Outflow<Dim>> outflows;
@@ -63,10 +69,10 @@ struct SolverParameters {
 /// The term switches and constants that follow from parameters and materials.
 struct SolverTerms {
   PairTerms pair;
-  bool relaxed = false;  ///< the stress is relaxed, with the shear wave speed as its stiffness
-  bool periodic = false;  ///< some axis repeats
-  bool gas = false;       ///< an ideal gas: particles carry internal energy
-  bool diffusion = false;  ///< density diffusion
+  bool relaxed = false;      ///< the stress is relaxed, with the shear wave speed as its stiffness
+  bool periodic = false;     ///< some axis repeats
+  bool gas = false;          ///< an ideal gas: particles carry internal energy
+  bool diffusion = false;    ///< density diffusion
   bool latent_heat = false;  ///< some material takes it up: particles carry their enthalpy
   bool exchange = false;     ///< heat passes through the free surface
   bool ledger = false;       ///< specific heats are known, and so energies
@@ -95,19 +101,20 @@ struct ParticleHit {
   BodyHit<Dim> hit;
 };
 
-/// Advances particles in time by leap-frog (kick-drift-kick). Real (float or double) is what the pair loops compute in; the state is
-/// double. Results do not depend on the number of threads.
+/// Advances particles in time by leap-frog (kick-drift-kick). Real (float or double) is what the pair loops compute in;
+/// the state is double. Results do not depend on the number of threads.
 template <int Dim, typename Real>
 class Solver {
  public:
   /// What follows from sums over pairs has no more digits than those.
   using RealVec = Eigen::Matrix<Real, Dim, 1>;
 
-  /// Throws Error where the parameters cannot be (non-positive lengths or densities, a periodic box too short; an ideal gas that is
-  /// viscous, conducts heat, meets walls or has an adiabatic index of 1 or less; density diffusion of a gas or of a summed density; no
-  /// particles and no emitter; latent heat, emissivity, an ambient or sources without specific heat). The particles of an ideal gas bring
-  /// their internal energy, those of materials with latent heat their temperature, and their enthalpy where the temperature does not
-  /// say it. `account` belongs to particles of a stored state, and is empty at the start.
+  /// Throws Error where the parameters cannot be (non-positive lengths or densities, a periodic box too short; an ideal
+  /// gas that is viscous, conducts heat, meets walls or has an adiabatic index of 1 or less; density diffusion of a gas
+  /// or of a summed density; no particles and no emitter; latent heat, emissivity, an ambient or sources without
+  /// specific heat). The particles of an ideal gas bring their internal energy, those of materials with latent heat
+  /// their temperature, and their enthalpy where the temperature does not say it. `account` belongs to particles of a
+  /// stored state, and is empty at the start.
   Solver(const SolverParameters<Dim>& parameters, std::vector<Material> materials, Colliders<Dim> colliders,
          Particles<Dim> particles, ParticleAccount account = {});
 
@@ -134,16 +141,18 @@ class Solver {
   /// What passed since the last prepare(); all zero where no specific heat is known.
   const HeatLedger& heat_ledger() const { return heat_ledger_; }
   bool knows_enthalpy() const { return terms_.ledger; }
-  /// Free surface that each particle stood for when it was last found, less than a fifth of h ago [m^(Dim - 1)]; empty where no heat
-  /// passes through it.
+  /// Free surface that each particle stood for when it was last found, less than a fifth of h ago [m^(Dim - 1)]; empty
+  /// where no heat passes through it.
   const std::vector<double>& free_surface_area() const { return free_surface_area_; }
 
-  /// Sorts, searches and evaluates the forces anew from the state alone. Called at the start of every frame, so that a run resumed
-  /// from a stored state goes on in the same bytes as one that never stopped. `time` [s] tells where moving obstacles are.
+  /// Sorts, searches and evaluates the forces anew from the state alone. Called at the start of every frame, so that a
+  /// run resumed from a stored state goes on in the same bytes as one that never stopped. `time` [s] tells where moving
+  /// obstacles are.
   void prepare(double time = 0.0);
 
   /// One step of at most `remaining` [s] from `time` [s]. Throws DivergedError with the particle, the term and
-  /// the time when a value is not finite, a density is beyond reason, a particle leaves the domain, or the time step collapses.
+  /// the time when a value is not finite, a density is beyond reason, a particle leaves the domain, or the time step
+  /// collapses.
   TimeStep step(double remaining, double time);
 
   /// `ended` is called in every step at the end of each of its stages; nullptr: nobody is.
@@ -154,7 +163,9 @@ class Solver {
     if (stage_ended_) stage_ended_(stage);
   }
   /// Of the neighbour lists [m].
-  double list_reach(double skin) const { return (kernel_kappa(parameters_.kernel) + skin) * parameters_.smoothing_length; }
+  double list_reach(double skin) const {
+    return (kernel_kappa(parameters_.kernel) + skin) * parameters_.smoothing_length;
+  }
   /// The skin that makes search and pairs together cheapest where particles move by `way` [m] a step.
   double best_skin(double way) const;
   double least_skin() const { return parameters_.skin.value_or(0.08); }
@@ -196,6 +207,7 @@ class Solver {
   double internal_energy(std::size_t i) const { return terms_.gas ? particles_.internal_energy[i] : 0.0; }
   TimeStepInput time_step_input() const;
   TimeStep find_time_step(double remaining, double time) const;
+  [[noreturn]] void fail_at_step(const TimeStep& step, double time) const;
   void check_state(double time) const;
   bool is_driven(std::size_t i) const { return !particles_.driven.empty() && particles_.driven[i] != 0; }
   void open_boundaries();
@@ -205,6 +217,8 @@ class Solver {
   void release_driven();
   bool remove_outflow();
   bool pour_in(double time);
+  void choose_terms();
+  void check_parameters() const;
   void resize_derived();
 
   SolverParameters<Dim> parameters_;
@@ -223,21 +237,22 @@ class Solver {
   std::size_t n_searches_ = 0;
   std::function<void(StepStage)> stage_ended_;
   Vec<Dim> origin_ = Vec<Dim>::Zero();
-  double skin_ = 0.0;  ///< reach of the neighbour lists beyond the support, in smoothing lengths
-  double step_way_ = 0.0;  ///< farthest way of any particle against their mean in the last step [m]
+  double skin_ = 0.0;                  ///< reach of the neighbour lists beyond the support, in smoothing lengths
+  double step_way_ = 0.0;              ///< farthest way of any particle against their mean in the last step [m]
   double travelled_at_surface_ = 0.0;  ///< the same since the free surface was found [m]
-  double travelled_ = std::numeric_limits<double>::infinity();  ///< farthest way of any particle against their mean since the last search [m]
+  double travelled_ = std::numeric_limits<double>::infinity();  ///< farthest way of any particle against their mean
+                                                                ///< since the last search [m]
   std::vector<float> clearance_;  ///< at least so far is each particle from all obstacles [m]; empty without any
   std::vector<DensitySums<Real>> density_sums_;  ///< empty where density follows the continuity equation
-  std::optional<Walls<Dim>> walls_;  ///< absent where no obstacle is a wall
-  std::vector<Vec<Dim>> wall_gradient_;  ///< of the pressure at each wall neighbour [Pa/m]
-  std::vector<Real> packed_gradient_;    ///< of the pressure for the diffusion of density; empty without it
+  std::optional<Walls<Dim>> walls_;              ///< absent where no obstacle is a wall
+  std::vector<Vec<Dim>> wall_gradient_;          ///< of the pressure at each wall neighbour [Pa/m]
+  std::vector<Real> packed_gradient_;            ///< of the pressure for the diffusion of density; empty without it
   std::vector<double> free_surface_area_;
   std::vector<double> power_density_;  ///< of each heat source of given power at weight 1, at this step [W/m^(Dim - 1)]
   HeatLedger heat_ledger_;
   std::vector<HeatBalance<Dim, Real>> heat_balance_;  ///< empty without heat
-  std::vector<RealVec> specific_force_;  ///< of pairs and walls [m/s^2]: gravity has more digits
-  std::vector<Real> energy_rate_;  ///< of an ideal gas [W/kg], or empty
+  std::vector<RealVec> specific_force_;               ///< of pairs and walls [m/s^2]: gravity has more digits
+  std::vector<Real> energy_rate_;                     ///< of an ideal gas [W/kg], or empty
   std::vector<Vec<Dim>>
       body_forces_;  ///< on each obstacle by each wall neighbour [N]; like the next, empty without rigid bodies
   std::vector<std::vector<ParticleHit<Dim>>> body_hits_;  ///< of the last drift, in blocks of particles

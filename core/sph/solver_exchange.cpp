@@ -20,8 +20,11 @@ void Solver<Dim, Real>::open_boundaries() {
   if (terms_.gas) fail("simulation: emitters and outflows are for liquids, not for an ideal gas");
   if (emitters.size() > 255) fail("simulation: up to 255 emitters are possible, there are {}", emitters.size());
   if (!emitters.empty() && parameters_.density != DensityForm::continuity)
-    fail("simulation: emitters go with the continuity equation; a density that is a sum would see the back of a vent as a free surface");
-  if (!emitters.empty() && terms_.periodic) fail("simulation: a periodic box has no emitters: what comes in could not go out of it");
+    fail(
+        "simulation: emitters go with the continuity equation; a density that is a sum would see the back of a vent as "
+        "a free surface");
+  if (!emitters.empty() && terms_.periodic)
+    fail("simulation: a periodic box has no emitters: what comes in could not go out of it");
   for (const Emitter<Dim>& emitter : emitters)
     layers_.push_back(compute_emitter_layers<Dim>(emitter, parameters_.particle_volume,
                                                   kernel_kappa(parameters_.kernel) * parameters_.smoothing_length));
@@ -36,10 +39,11 @@ void Solver<Dim, Real>::open_boundaries() {
   }
 }
 
-/// A driven particle has the pressure of the fluid before it, with what gravity adds on the way: relative to the density at rest,
+/// A driven particle has the pressure of the fluid before it, with what gravity adds on the way: relative to the
+/// density at rest,
 ///   rho_i/rho0_i - 1 = sum_j V_j W_ij (rho_j/rho0_j - 1 + g.x_ij/c^2) / sum_j V_j W_ij  over the free j,
-/// where that is positive, else 0. What leaves the duct meets its like. A vent does not suck at fluid that pulls away from it: where it did,
-/// each would make the other thinner without end.
+/// where that is positive, else 0. What leaves the duct meets its like. A vent does not suck at fluid that pulls away
+/// from it: where it did, each would make the other thinner without end.
 template <int Dim, typename Real>
 double Solver<Dim, Real>::match_driven_density(std::size_t i) const {
   using Fields = PairFields<Dim, Real>;
@@ -68,8 +72,8 @@ void Solver<Dim, Real>::match_driven_densities() {
   });
 }
 
-/// Lets go what has left its duct, takes out what has flown out and pours in what is due. The only place where the number of particles
-/// changes.
+/// Lets go what has left its duct, takes out what has flown out and pours in what is due. The only place where the
+/// number of particles changes.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::exchange_particles(double time) {
   if (parameters_.emitters.empty() && parameters_.outflows.empty()) return;
@@ -88,7 +92,8 @@ void Solver<Dim, Real>::release_driven() {
     if (particles_.driven[i] == 0) continue;
     const std::size_t e = particles_.driven[i] - 1U;
     const Emitter<Dim>& emitter = parameters_.emitters[e];
-    if ((particles_.position[i] - emitter.position).dot(emitter.direction) >= layers_[e].depth) particles_.driven[i] = 0;
+    if ((particles_.position[i] - emitter.position).dot(emitter.direction) >= layers_[e].depth)
+      particles_.driven[i] = 0;
   }
 }
 
@@ -99,8 +104,9 @@ bool Solver<Dim, Real>::remove_outflow() {
   std::vector<std::int32_t> keep;
   keep.reserve(particles_.size());
   for (std::size_t i = 0; i < particles_.size(); ++i) {
-    const bool out = !is_driven(i) && std::any_of(parameters_.outflows.begin(), parameters_.outflows.end(),
-                                                  [&](const Outflow<Dim>& o) { return o.removes(particles_.position[i]); });
+    const bool out =
+        !is_driven(i) && std::any_of(parameters_.outflows.begin(), parameters_.outflows.end(),
+                                     [&](const Outflow<Dim>& o) { return o.removes(particles_.position[i]); });
     if (out)
       ++account_.removed[particles_.material.empty() ? 0 : particles_.material[i]];
     else
@@ -126,7 +132,8 @@ bool Solver<Dim, Real>::pour_in(double time) {
     const Material& m = materials_[emitter.material];
     const std::int64_t due = count_entered<Dim>(emitter, layers_[e], time);
     for (std::int64_t& k = account_.entered[e]; k < due; ++k) {
-      if (account_.next_id == std::numeric_limits<std::int32_t>::max()) fail("simulation: more than 2^31 particles were poured in");
+      if (account_.next_id == std::numeric_limits<std::int32_t>::max())
+        fail("simulation: more than 2^31 particles were poured in");
       particles_.id.push_back(account_.next_id++);
       if (materials_.size() > 1) particles_.material.push_back(emitter.material);
       particles_.position.push_back(entered_position<Dim>(emitter, layers_[e], k, time));
@@ -141,7 +148,8 @@ bool Solver<Dim, Real>::pour_in(double time) {
                            ? melted_fraction_at_enthalpy(*m.heat, enthalpy_at(*m.heat, emitter.temperature))
                            : melted_fraction(*m.heat, emitter.temperature);
       particles_.stress.push_back(Symmetric<Dim>::Zero());
-      particles_.viscosity.push_back(static_cast<float>(viscosity(flow_curve_at(m.rheology, u, emitter.temperature), 0.0)));
+      particles_.viscosity.push_back(
+          static_cast<float>(viscosity(flow_curve_at(m.rheology, u, emitter.temperature), 0.0)));
     }
   }
   return particles_.size() != before;

@@ -16,13 +16,15 @@ namespace {
 
 void check_heat(const Material& m) {
   const HeatProperties& heat = *m.heat;
-  if (heat.latent_heat < 0.0) fail("material \"{}\": its latent heat must be >= 0 J/kg, is {}", m.name, heat.latent_heat);
+  if (heat.latent_heat < 0.0)
+    fail("material \"{}\": its latent heat must be >= 0 J/kg, is {}", m.name, heat.latent_heat);
   if (heat.emissivity < 0.0 || heat.emissivity > 1.0)
     fail("material \"{}\": its emissivity must be from 0 to 1, is {}", m.name, heat.emissivity);
   if ((heat.latent_heat > 0.0 || heat.emissivity > 0.0) && !(heat.specific_heat > 0.0))
     fail("material \"{}\": latent heat and emissivity need its specific heat", m.name);
   if (!(heat.hot > heat.cold) && !(heat.latent_heat > 0.0 && heat.hot == heat.cold))
-    fail("material \"{}\": hot_K = {} must be above cold_K = {}; only with latent heat may they be equal", m.name, heat.hot, heat.cold);
+    fail("material \"{}\": hot_K = {} must be above cold_K = {}; only with latent heat may they be equal", m.name,
+         heat.hot, heat.cold);
 }
 
 }  // namespace
@@ -46,7 +48,8 @@ void Solver<Dim, Real>::set_up_heat() {
     if ((m.heat->specific_heat > 0.0) != (first.heat->specific_heat > 0.0))
       fail("simulation: either all materials have a specific heat or none");
   }
-  if (terms_.exchange && !terms_.ledger) fail("simulation: heat through the free surface needs the specific heat of all materials");
+  if (terms_.exchange && !terms_.ledger)
+    fail("simulation: heat through the free surface needs the specific heat of all materials");
   if (!terms_.latent_heat) return;
   if (particles_.enthalpy.empty()) {
     for (std::size_t i = 0; i < particles_.size(); ++i)
@@ -74,8 +77,8 @@ void Solver<Dim, Real>::find_free_surface() {
   travelled_at_surface_ = 0.0;
   std::vector<double> volume(particles_.size());
   parallel_for_each(volume.size(), [&](std::size_t i) { volume[i] = mass(i) / particles_.density[i]; });
-  compute_free_surface_areas<Dim>({particles_.position, volume, images_, lists_, walls_ ? &*walls_ : nullptr, parameters_.kernel,
-                                   parameters_.smoothing_length, spacing_},
+  compute_free_surface_areas<Dim>({particles_.position, volume, images_, lists_, walls_ ? &*walls_ : nullptr,
+                                   parameters_.kernel, parameters_.smoothing_length, spacing_},
                                   free_surface_area_);
 }
 
@@ -88,7 +91,10 @@ void Solver<Dim, Real>::find_source_powers(double time) {
     if (!source.power || !source.burns_at(time)) continue;
     const double weighted_area = deterministic_reduce(
         particles_.size(), 0.0,
-        [&](std::size_t i) { return free_surface_area_[i] * source.weight_at(particles_.position[i], time); },
+        [&](std::size_t i) {
+          // What a vent drives takes nothing up (advance_heat).
+          return is_driven(i) ? 0.0 : free_surface_area_[i] * source.weight_at(particles_.position[i], time);
+        },
         [](double a, double b) { return a + b; });
     if (weighted_area > 0.0) power_density_[k] = *source.power / weighted_area;
   }
@@ -109,9 +115,11 @@ HeatLedger Solver<Dim, Real>::advance_heat(std::size_t i, double conducted, doub
   }
   const double per_rate = dt * conductivity(m) / particles_.density[i];  // of specific enthalpy
   if (const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr)
-    passed.to_walls = -mass(i) * per_rate * wall_heat<Dim>(*wall, colliders_, particles_.temperature[i]) / heat_balance_[i].moment_trace;
+    passed.to_walls = -mass(i) * per_rate * wall_heat<Dim>(*wall, colliders_, particles_.temperature[i]) /
+                      heat_balance_[i].moment_trace;
 
-  const double before = terms_.latent_heat ? particles_.enthalpy[i] : heat.specific_heat * (particles_.temperature[i] - heat.cold);
+  const double before =
+      terms_.latent_heat ? particles_.enthalpy[i] : heat.specific_heat * (particles_.temperature[i] - heat.cold);
   double after = before + per_rate * conducted;
   if (terms_.exchange && free_surface_area_[i] > 0.0) after = exchange_heat(i, dt, time, after, passed);
   if (terms_.latent_heat) {
@@ -123,10 +131,12 @@ HeatLedger Solver<Dim, Real>::advance_heat(std::size_t i, double conducted, doub
   return passed;
 }
 
-/// Exchange with ambient and sources, on top of what conduction alone would leave, `target` [J/kg]. The particle's centre is half a
-/// spacing below the surface, which is colder (or hotter) by what it takes to conduct the heat that far.
+/// Exchange with ambient and sources, on top of what conduction alone would leave, `target` [J/kg]. The particle's
+/// centre is half a spacing below the surface, which is colder (or hotter) by what it takes to conduct the heat that
+/// far.
 template <int Dim, typename Real>
-double Solver<Dim, Real>::exchange_heat(std::size_t i, double dt, double time, double target, HeatLedger& passed) const {
+double Solver<Dim, Real>::exchange_heat(std::size_t i, double dt, double time, double target,
+                                        HeatLedger& passed) const {
   const Material& m = material(i);
   const HeatProperties& heat = *m.heat;
   const SurfaceExchange exchange = surface_exchange(i, time);
@@ -135,7 +145,9 @@ double Solver<Dim, Real>::exchange_heat(std::size_t i, double dt, double time, d
   const auto temperature_of = [&](double h) {
     return terms_.latent_heat ? temperature_at_enthalpy(heat, h) : heat.cold + h / heat.specific_heat;
   };
-  const auto slope_of = [&](double h) { return terms_.latent_heat ? temperature_slope(heat, h) : 1.0 / heat.specific_heat; };
+  const auto slope_of = [&](double h) {
+    return terms_.latent_heat ? temperature_slope(heat, h) : 1.0 / heat.specific_heat;
+  };
   const double area_dt = dt * free_surface_area_[i];
   const double after = exchange_enthalpy(exchange, resistance, area_dt / mass(i), target, temperature_of, slope_of);
   const double t = surface_temperature(exchange, resistance, temperature_of(after));

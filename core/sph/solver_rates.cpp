@@ -1,4 +1,5 @@
-// The first half of a step's sums: pressure gradients, the first pass over pairs, and what follows from it for density, heat and stress.
+// The first half of a step's sums: pressure gradients, the first pass over pairs, and what follows from it for density,
+// heat and stress.
 #include "core/parallel.h"
 #include "core/sph/gradient_correction.h"
 #include "core/sph/solver.h"
@@ -45,8 +46,8 @@ template <int Dim, typename Real>
 void Solver<Dim, Real>::sum_densities() {
   if (parameters_.density == DensityForm::continuity) return;
   set_summed_densities(false);
-  // [S 4.20] has V_j from the densities of the step before. Evenly compressed, those would come out again, and nothing would resist:
-  // the volumes follow from the plain sums instead.
+  // [S 4.20] has V_j from the densities of the step before. Evenly compressed, those would come out again, and nothing
+  // would resist: the volumes follow from the plain sums instead.
   if (parameters_.density == DensityForm::normalised_summation) set_summed_densities(true);
 }
 
@@ -56,7 +57,8 @@ void Solver<Dim, Real>::set_summed_densities(bool normalise) {
   const std::size_t n = particles_.size();
   density_sums_.resize(n);
   parallel_blocks(n, [&](std::size_t begin, std::size_t end) {
-    compute_density_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end, density_sums_.data() + begin);
+    compute_density_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end,
+                                    density_sums_.data() + begin);
   });
   parallel_for_each(n, [&](std::size_t i) {
     const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr;
@@ -103,7 +105,8 @@ HeatLedger Solver<Dim, Real>::advance_block(std::size_t begin, std::size_t end, 
   HeatLedger passed;
   for (std::size_t i = begin; i < end; ++i) {
     RateSums<Dim, Real>& rate = rates[i - begin];
-    if (const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr) add_wall_rates(*wall, rate, sighted[i - begin]);
+    if (const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr)
+      add_wall_rates(*wall, rate, sighted[i - begin]);
     Mat<Dim> correction = Mat<Dim>::Zero();
     if (terms_.pair.stress || terms_.pair.has_heat())
       correction = compute_gradient_correction<Dim>(unpack<Dim, Real>(rate.position_moment));
@@ -137,7 +140,8 @@ void Solver<Dim, Real>::evaluate_pressure_gradients() {
   const bool everywhere = terms_.diffusion && terms_.pair.stress;
   const auto evaluate = [&](std::size_t begin, std::size_t end) {
     std::array<PressureGradientSums<Dim, Real>, block_size> sums;
-    compute_pressure_gradient_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin, end, sums.data());
+    compute_pressure_gradient_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin,
+                                              end, sums.data());
     for (std::size_t i = begin; i < end; ++i) {
       const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr;
       const Vec<Dim> gradient =
@@ -157,9 +161,8 @@ void Solver<Dim, Real>::evaluate_pressure_gradients() {
     });
   if (!terms_.diffusion) return;
   if (!everywhere)
-    parallel_for_each(n, [&](std::size_t i) {
-      pack(i, particles_.density[i] * (parameters_.gravity - acceleration(i)));
-    });
+    parallel_for_each(n,
+                      [&](std::size_t i) { pack(i, particles_.density[i] * (parameters_.gravity - acceleration(i))); });
   for (std::size_t k = 0; k < images_.size(); ++k)
     std::copy_n(packed_gradient_.data() + stride * static_cast<std::size_t>(images_.source[k]), stride,
                 packed_gradient_.data() + stride * (n + k));
@@ -201,7 +204,8 @@ void Solver<Dim, Real>::collect_stress(std::size_t i, const Mat<Dim>& correction
   const std::size_t k = stresses.size++;
   const bool sees_less = terms_.pair.sight && sighted.position_moment != rate.position_moment;
   const auto& moment = sees_less ? sighted.velocity_moment : rate.velocity_moment;
-  const Mat<Dim> of_seen = sees_less ? compute_gradient_correction<Dim>(unpack<Dim, Real>(sighted.position_moment)) : correction;
+  const Mat<Dim> of_seen =
+      sees_less ? compute_gradient_correction<Dim>(unpack<Dim, Real>(sighted.position_moment)) : correction;
   for (std::size_t a = 0; a < Dim; ++a)
     for (std::size_t b = 0; b < Dim; ++b) {
       stresses.bare_gradient[a * Dim + b][k] = moment[a * Dim + b];

@@ -22,7 +22,8 @@ void Solver<Dim, Real>::pack_heat(std::size_t i, double largest_conductivity, Re
   for (int a = 0; a < Dim; ++a) record[Fields::balance_at + a] = heat_balance_[i].lambda[a];
 }
 
-/// Viscosities at rest, and whether they differ by more than a stress sees across. A power law without yield stress has none: that at 1/s.
+/// Viscosities at rest, and whether they differ by more than a stress sees across. A power law without yield stress has
+/// none: that at 1/s.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::pack_sight() {
   using Fields = PairFields<Dim, Real>;
@@ -33,14 +34,17 @@ void Solver<Dim, Real>::pack_sight() {
       particles_.size(), Range{std::numeric_limits<double>::infinity(), 0.0},
       [&](std::size_t i) {
         const Material& m = material(i);
-        const FlowCurve curve =
-            m.heat ? flow_curve_at(m.rheology, melted_fraction_of(i), particles_.temperature[i]) : flow_curve_at(m.rheology, 0.0);
+        const FlowCurve curve = m.heat ? flow_curve_at(m.rheology, melted_fraction_of(i), particles_.temperature[i])
+                                       : flow_curve_at(m.rheology, 0.0);
         constexpr double inviscid = 1e-30;
-        const double eta = std::max(inviscid, std::isfinite(curve.rest_viscosity) ? curve.rest_viscosity : curve.consistency);
+        const double eta =
+            std::max(inviscid, std::isfinite(curve.rest_viscosity) ? curve.rest_viscosity : curve.consistency);
         fields_.record(i)[Fields::rest_viscosity_at] = static_cast<Real>(eta);
         return Range{eta, eta};
       },
-      [](const Range& a, const Range& b) { return Range{std::min(a.least, b.least), std::max(a.most, b.most)}; });
+      [](const Range& a, const Range& b) {
+        return Range{std::min(a.least, b.least), std::max(a.most, b.most)};
+      });
   terms_.pair.sight = of_all.most > sight_of_thinner * of_all.least;
 }
 
@@ -85,7 +89,8 @@ void Solver<Dim, Real>::copy_records_to_images() {
 /// Of a liquid [Pa].
 template <int Dim, typename Real>
 double Solver<Dim, Real>::pressure(std::size_t i) const {
-  return compute_pressure(parameters_.equation_of_state, parameters_.sound_speed, material(i).density, particles_.density[i], 0.0);
+  return compute_pressure(parameters_.equation_of_state, parameters_.sound_speed, material(i).density,
+                          particles_.density[i], 0.0);
 }
 
 /// The records of the force pass, from the state after the rates.
@@ -114,8 +119,9 @@ void Solver<Dim, Real>::pack_stress(std::size_t i, std::size_t k, const StressBl
   if (terms_.pair.hourglass) pack_hourglass(i, k, stresses);
 }
 
-/// The same for an ideal gas after a step of dt. Its forces depend on energy and velocity, so both are wanted at the step's end: half a
-/// kick ahead, by the rates of the step before. What particles lose as kinetic energy they then gain as heat to second order in dt.
+/// The same for an ideal gas after a step of dt. Its forces depend on energy and velocity, so both are wanted at the
+/// step's end: half a kick ahead, by the rates of the step before. What particles lose as kinetic energy they then gain
+/// as heat to second order in dt.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::pack_gas(std::size_t i, double dt) {
   using Fields = PairFields<Dim, Real>;
@@ -132,7 +138,8 @@ void Solver<Dim, Real>::pack_gas(std::size_t i, double dt) {
   record[Fields::sound_speed_at] = static_cast<Real>(compute_sound_speed(state, 0.0, 1.0, rho, e));
 }
 
-/// A solid's viscosity would need tiny steps: with a relaxed stress, that of a shear wave over a quarter of a smoothing length is enough.
+/// A solid's viscosity would need tiny steps: with a relaxed stress, that of a shear wave over a quarter of a smoothing
+/// length is enough.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::pack_hourglass(std::size_t i, std::size_t k, const StressBlock<Dim>& stresses) {
   double eta = particles_.viscosity[i];

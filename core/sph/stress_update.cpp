@@ -3,9 +3,11 @@
 #define HWY_DISABLED_TARGETS HWY_AVX3_DL
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/sph/stress_update.cpp"
+// clang-format off
 #include <hwy/foreach_target.h>  // must come before highway.h
 
 #include "core/sph/stress_update-inl.h"
+// clang-format on
 
 #if HWY_ONCE
 #include "core/error.h"

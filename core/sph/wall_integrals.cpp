@@ -298,8 +298,8 @@ FacetIntegrals<Dim> integrate_facet(const WallKernel<Dim>& kernel, const Simplex
 }
 
 template <int Dim>
-FacetIntegrals<Dim> integrate_small_facet(const WallKernel<Dim>& kernel, const Simplex<Dim>& facet, const Vec<Dim>& normal,
-                                          const Vec<Dim>& point) {
+FacetIntegrals<Dim> integrate_small_facet(const WallKernel<Dim>& kernel, const Simplex<Dim>& facet,
+                                          const Vec<Dim>& normal, const Vec<Dim>& point) {
   FacetIntegrals<Dim> sum;
   Vec<Dim> y = -point;
   for (const Vec<Dim>& corner : facet) y += corner / Dim;
@@ -320,12 +320,12 @@ FacetIntegrals<Dim> integrate_small_facet(const WallKernel<Dim>& kernel, const S
   return sum;
 }
 
-#define SMELT_INSTANTIATE(Dim)                                                                                          \
-  template class WallKernel<Dim>;                                                                                       \
-  template FacetIntegrals<Dim> integrate_facet<Dim>(const WallKernel<Dim>&, const Simplex<Dim>&, const Vec<Dim>&,       \
-                                                    const Vec<Dim>&);                                                   \
-  template FacetIntegrals<Dim> integrate_small_facet<Dim>(const WallKernel<Dim>&, const Simplex<Dim>&, const Vec<Dim>&, \
-                                                          const Vec<Dim>&);
+#define SMELT_INSTANTIATE(Dim)                                                                                    \
+  template class WallKernel<Dim>;                                                                                 \
+  template FacetIntegrals<Dim> integrate_facet<Dim>(const WallKernel<Dim>&, const Simplex<Dim>&, const Vec<Dim>&, \
+                                                    const Vec<Dim>&);                                             \
+  template FacetIntegrals<Dim> integrate_small_facet<Dim>(const WallKernel<Dim>&, const Simplex<Dim>&,            \
+                                                          const Vec<Dim>&, const Vec<Dim>&);
 SMELT_INSTANTIATE(1)
 SMELT_INSTANTIATE(2)
 SMELT_INSTANTIATE(3)

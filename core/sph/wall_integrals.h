@@ -84,7 +84,7 @@ FacetIntegrals<Dim> integrate_facet(const WallKernel<Dim>& kernel, const Simplex
 /// The same by one point, the facet's centroid, in a tenth of the time (measured: 32 ns for 320 and more): for facets
 /// much smaller than h and farther off than their own size. The relative error is of the order of (size/distance)^2.
 template <int Dim>
-FacetIntegrals<Dim> integrate_small_facet(const WallKernel<Dim>& kernel, const Simplex<Dim>& facet, const Vec<Dim>& normal,
-                                          const Vec<Dim>& point);
+FacetIntegrals<Dim> integrate_small_facet(const WallKernel<Dim>& kernel, const Simplex<Dim>& facet,
+                                          const Vec<Dim>& normal, const Vec<Dim>& point);
 
 }  // namespace smelt

@@ -2,16 +2,19 @@
 #define HWY_DISABLED_TARGETS (HWY_AVX3 | HWY_AVX3_DL | HWY_SSE4)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/sph/wall_samples.cpp"
+// clang-format off
 #include <hwy/foreach_target.h>  // must come before highway.h
 
 #include "core/sph/wall_samples-inl.h"
+// clang-format on
 
 #if HWY_ONCE
 #include <algorithm>
 
 namespace smelt {
 
-SampleKernel::SampleKernel(const WallKernel<3>& kernel) : smoothing_length(kernel.smoothing_length()), n_terms(kernel.terms().size()) {
+SampleKernel::SampleKernel(const WallKernel<3>& kernel)
+    : smoothing_length(kernel.smoothing_length()), n_terms(kernel.terms().size()) {
   for (std::size_t t = 0; t < n_terms; ++t) {
     const RadialTerm& term = kernel.terms()[t];
     terms[t].radius = static_cast<float>(term.radius);
@@ -22,7 +25,8 @@ SampleKernel::SampleKernel(const WallKernel<3>& kernel) : smoothing_length(kerne
   }
 }
 
-void pack_wall_samples(std::span<const WallSample> samples, const Vec3& origin, double side, std::vector<float>& packed) {
+void pack_wall_samples(std::span<const WallSample> samples, const Vec3& origin, double side,
+                       std::vector<float>& packed) {
   const std::size_t n_groups = (samples.size() + wall_lanes - 1) / wall_lanes;
   for (std::size_t g = 0; g < n_groups; ++g) {
     const std::size_t at = packed.size();
@@ -40,7 +44,8 @@ void pack_wall_samples(std::span<const WallSample> samples, const Vec3& origin, 
       packed[at + 6 * wall_lanes + lane] = static_cast<float>(s.area.norm());
       for (int a = 0, m = 3; a < 3; ++a) {
         packed[at + static_cast<std::size_t>(7 + a) * wall_lanes + lane] = static_cast<float>(s.spread(a, a));
-        for (int b = a + 1; b < 3; ++b, ++m) packed[at + static_cast<std::size_t>(7 + m) * wall_lanes + lane] = static_cast<float>(s.spread(a, b));
+        for (int b = a + 1; b < 3; ++b, ++m)
+          packed[at + static_cast<std::size_t>(7 + m) * wall_lanes + lane] = static_cast<float>(s.spread(a, b));
       }
     }
   }

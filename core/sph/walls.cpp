@@ -13,10 +13,12 @@ namespace smelt {
 
 namespace {
 
-/// +1 where a particle is in front of an obstacle, -1 behind. A solid's front is outside, whatever the particle sees; a sheet has a
-/// front on the side of the particle: that of the nearest facet, of those equally near the one whose plane is farthest.
+/// +1 where a particle is in front of an obstacle, -1 behind. A solid's front is outside, whatever the particle sees; a
+/// sheet has a front on the side of the particle: that of the nearest facet, of those equally near the one whose plane
+/// is farthest.
 template <int Dim>
-double side_of(const Obstacle<Dim>& obstacle, const SimplexBvh<Dim>& bvh, const Vec<Dim>& local, const std::vector<std::uint32_t>& facets) {
+double side_of(const Obstacle<Dim>& obstacle, const SimplexBvh<Dim>& bvh, const Vec<Dim>& local,
+               const std::vector<std::uint32_t>& facets) {
   if (obstacle.closed) return 1.0;
   double nearest = std::numeric_limits<double>::infinity();
   double height = 0.0;
@@ -43,7 +45,8 @@ bool is_small(const Simplex<Dim>& facet, const Vec<Dim>& point, double h) {
   return (facet[0] - point).squaredNorm() > 9.0 * limit2;  // a corner three lengths off: the rest at least two
 }
 
-/// The acceleration that fluid at the wall shares. What slips does not go round with the wall: it has no part in the centripetal one.
+/// The acceleration that fluid at the wall shares. What slips does not go round with the wall: it has no part in the
+/// centripetal one.
 template <int Dim>
 Vec<Dim> wall_acceleration_at(const PlacedObstacle<Dim>& placed, const Vec<Dim>& position) {
   const RigidAcceleration<Dim>& a = placed.acceleration;
@@ -68,14 +71,15 @@ void add_to_contact(const Piece<Dim>& piece, std::uint32_t obstacle, double same
   // Sums first; the normal is the mean once they are whole.
   constexpr double same_direction = 0.985;
   const bool in_front = piece.plane > 0.0;
-  auto contact = std::find_if(contacts.begin() + static_cast<std::ptrdiff_t>(own), contacts.end(), [&](const WallContact<Dim>& c) {
-    return in_front == (c.distance > 0.0) &&
-           c.normal.dot(piece.normal) > same_direction * c.normal.norm() &&
-           std::abs(c.first.dot(piece.normal) / c.area + piece.plane) < same_plane;
-  });
+  auto contact =
+      std::find_if(contacts.begin() + static_cast<std::ptrdiff_t>(own), contacts.end(), [&](const WallContact<Dim>& c) {
+        return in_front == (c.distance > 0.0) && c.normal.dot(piece.normal) > same_direction * c.normal.norm() &&
+               std::abs(c.first.dot(piece.normal) / c.area + piece.plane) < same_plane;
+      });
   if (contact == contacts.end()) {
     const double unset = in_front ? 1.0 : -1.0;
-    contact = contacts.insert(contact, {Vec<Dim>::Zero(), Vec<Dim>::Zero(), unset, 0.0, 0.0, 0.0, 0.0, 0.0, obstacle, Vec<Dim>::Zero(), Vec<Dim>::Zero()});
+    contact = contacts.insert(contact, {Vec<Dim>::Zero(), Vec<Dim>::Zero(), unset, 0.0, 0.0, 0.0, 0.0, 0.0, obstacle,
+                                        Vec<Dim>::Zero(), Vec<Dim>::Zero()});
   }
   contact->normal += piece.area_vector;
   contact->first += piece.first;
@@ -137,7 +141,8 @@ void Walls<Dim>::sort_slots() {
 }
 
 template <int Dim>
-void Walls<Dim>::update(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position, std::span<const Vec<Dim>> velocity, double dt) {
+void Walls<Dim>::update(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position,
+                        std::span<const Vec<Dim>> velocity, double dt) {
   CHECK_EQ(position.size(), slot_.size());
   if constexpr (Dim == 3)
     if (!sample_kernel_) {
@@ -154,7 +159,8 @@ void Walls<Dim>::update(const Colliders<Dim>& colliders, std::span<const Vec<Dim
         for (std::size_t k = begin; k < end; ++k) {
           const auto i = static_cast<std::size_t>(neighbours_[k].particle);
           // Where obstacles move, the sums are made anew at every step.
-          refresh(colliders, position[i], colliders.step_way() > 0.0 ? Vec<Dim>::Zero() : half_of_a_little(velocity[i], dt), k);
+          refresh(colliders, position[i],
+                  colliders.step_way() > 0.0 ? Vec<Dim>::Zero() : half_of_a_little(velocity[i], dt), k);
         }
       },
       grain);
@@ -167,12 +173,14 @@ bool Walls<Dim>::comes_near(const Colliders<Dim>& colliders, std::span<const Vec
   const double limit = reach() + 2.0 * kernel_.smoothing_length();
   double nearest = limit;
   for (const PlacedObstacle<Dim>& placed : colliders.placed())
-    if (placed.obstacle.wall && !placed.gone) nearest = std::min(nearest, placed.bvh.distance(placed.begin.to_rest(position[i]), nearest));
+    if (placed.obstacle.wall && !placed.gone)
+      nearest = std::min(nearest, placed.bvh.distance(placed.begin.to_rest(position[i]), nearest));
   apart_[i] = round_down(nearest - kernel_.support_radius() + way_);
   return nearest < reach();
 }
 
-/// Gives a slot to what has come near. In the order of the particles: what depends on it is the same on any number of threads.
+/// Gives a slot to what has come near. In the order of the particles: what depends on it is the same on any number of
+/// threads.
 template <int Dim>
 void Walls<Dim>::take_in(const Colliders<Dim>& colliders, std::span<const Vec<Dim>> position) {
   std::vector<std::vector<std::int32_t>> come((position.size() + block_size - 1) / block_size);
@@ -180,7 +188,8 @@ void Walls<Dim>::take_in(const Colliders<Dim>& colliders, std::span<const Vec<Di
       come.size(),
       [&](std::size_t block, std::size_t) {
         for (std::size_t i = block * block_size; i < std::min(position.size(), (block + 1) * block_size); ++i)
-          if (slot_[i] < 0 && apart_[i] <= way_ && comes_near(colliders, position, i)) come[block].push_back(static_cast<std::int32_t>(i));
+          if (slot_[i] < 0 && apart_[i] <= way_ && comes_near(colliders, position, i))
+            come[block].push_back(static_cast<std::int32_t>(i));
       },
       1);
   for (const auto& block : come)
@@ -213,8 +222,8 @@ void Walls<Dim>::drop_blind() {
   views_.resize(kept);
 }
 
-/// Half of the way from one making of the sums to the next; a whole number of steps. From its beginning to its end they then are ahead
-/// of the particle and behind it by as much.
+/// Half of the way from one making of the sums to the next; a whole number of steps. From its beginning to its end they
+/// then are ahead of the particle and behind it by as much.
 template <int Dim>
 Vec<Dim> Walls<Dim>::half_of_a_little(const Vec<Dim>& velocity, double dt) const {
   const double speed = velocity.norm(), step = dt * speed;
@@ -223,7 +232,8 @@ Vec<Dim> Walls<Dim>::half_of_a_little(const Vec<Dim>& velocity, double dt) const
 }
 
 template <int Dim>
-void Walls<Dim>::refresh(const Colliders<Dim>& colliders, const Vec<Dim>& position, const Vec<Dim>& ahead, std::size_t slot) {
+void Walls<Dim>::refresh(const Colliders<Dim>& colliders, const Vec<Dim>& position, const Vec<Dim>& ahead,
+                         std::size_t slot) {
   View& view = views_[slot];
   WallNeighbour<Dim>& seen = neighbours_[slot];
   if (view.way < 0.0 || (position - view.origin).norm() + way_ - view.way > slack()) {
@@ -268,7 +278,8 @@ void Walls<Dim>::look_up(const Colliders<Dim>& colliders, const Vec<Dim>& positi
       sight.side = side_of<Dim>(placed.obstacle, placed.bvh, sight.origin, nearest);
     }
     if constexpr (Dim == 3) {
-      trees_[o].gather(sight.origin, kernel_.smoothing_length(), kernel_.support_radius(), slack(), patches, view.facets);
+      trees_[o].gather(sight.origin, kernel_.smoothing_length(), kernel_.support_radius(), slack(), patches,
+                       view.facets);
       for (std::size_t p = 0; p < patches.n; ++p) {
         const WallPatch& patch = patches.patch[p];
         if (patch.samples.empty()) continue;
@@ -324,33 +335,37 @@ void Walls<Dim>::sum_sight(const PlacedObstacle<Dim>& placed, const Vec<Dim>& lo
     if (!(integrals.area > 0.0)) continue;
     sums.solid += integrals.solid;
     moment += integrals.solid * Mat<Dim>::Identity() - integrals.first * normal.transpose();
-    add_to_contact<Dim>({integrals.area, integrals.area * normal, integrals.first, integrals.solid, normal, (local - facet[0]).dot(normal)},
+    add_to_contact<Dim>({integrals.area, integrals.area * normal, integrals.first, integrals.solid, normal,
+                         (local - facet[0]).dot(normal)},
                         sight.obstacle, same_plane, own, sums.contacts);
   }
   if constexpr (Dim == 3) {
     for (std::size_t p = k == 0 ? 0 : view.sights[k - 1].patches_end; p < sight.patches_end; ++p) {
       const std::size_t begin = p == 0 ? 0 : view.patches_end[p - 1];
-      const SampleSums patch =
-          sum_wall_samples(*sample_kernel_, {view.samples.data() + begin, view.patches_end[p] - begin}, local - sight.origin);
+      const SampleSums patch = sum_wall_samples(
+          *sample_kernel_, {view.samples.data() + begin, view.patches_end[p] - begin}, local - sight.origin);
       if (!(patch.area > 0.0)) continue;
       sums.solid += patch.solid;
       moment += patch.moment;
       const Vec3 normal = patch.normal.normalized();
-      add_to_contact<3>({patch.area, patch.normal, patch.first, patch.solid, normal, -patch.first.dot(normal) / patch.area}, sight.obstacle,
-                        same_plane, own, sums.contacts);
+      add_to_contact<3>(
+          {patch.area, patch.normal, patch.first, patch.solid, normal, -patch.first.dot(normal) / patch.area},
+          sight.obstacle, same_plane, own, sums.contacts);
     }
   }
   const Mat<Dim>& rotation = placed.begin.rotation;
   sums.moment += rotation * moment * rotation.transpose();
-  for (auto contact = sums.contacts.begin() + static_cast<std::ptrdiff_t>(own); contact != sums.contacts.end(); ++contact) {
+  for (auto contact = sums.contacts.begin() + static_cast<std::ptrdiff_t>(own); contact != sums.contacts.end();
+       ++contact) {
     contact->normal = rotation * contact->normal;
     contact->first = rotation * contact->first;
   }
 }
 
-/// The sums of a view after the particle has moved a little, as those of a plane change with its distance: with d the contact's
-/// distance and s = 1 + dA/A of a whole plane, A' = s A, Gamma' = Gamma - (A + A')/2 dd (exact to the second order, as dGamma/dd = -A), and
-/// first' = s first, its part along n times d'/d as well. False where the particle would be in the plane.
+/// The sums of a view after the particle has moved a little, as those of a plane change with its distance: with d the
+/// contact's distance and s = 1 + dA/A of a whole plane, A' = s A, Gamma' = Gamma - (A + A')/2 dd (exact to the second
+/// order, as dGamma/dd = -A), and first' = s first, its part along n times d'/d as well. False where the particle would
+/// be in the plane.
 template <int Dim>
 bool Walls<Dim>::shift(const View& view, const Vec<Dim>& moved, WallNeighbour<Dim>& seen) const {
   seen.solid = view.sums.solid;
@@ -381,7 +396,8 @@ bool Walls<Dim>::shift(const View& view, const Vec<Dim>& moved, WallNeighbour<Di
 
 /// What follows from a contact's sums and its obstacle's motion.
 template <int Dim>
-void Walls<Dim>::complete(const PlacedObstacle<Dim>& placed, const Vec<Dim>& position, WallContact<Dim>& contact) const {
+void Walls<Dim>::complete(const PlacedObstacle<Dim>& placed, const Vec<Dim>& position,
+                          WallContact<Dim>& contact) const {
   contact.velocity = placed.velocity_at(position, contact.normal);
   contact.acceleration = wall_acceleration_at<Dim>(placed, position);
   // A plane seen from behind takes back what a plane in front of it gave: nothing goes on linearly from there.

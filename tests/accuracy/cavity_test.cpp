@@ -1,6 +1,7 @@
 // The lid-driven square cavity at Re = 1 [S 4.5.2] against finite differences: four walls, one of which slides.
 
 #include "bench/cases/cavity.h"
+
 #include "bench/cases/set_up.h"
 #include "tests/accuracy/measure.h"
 

@@ -1,4 +1,5 @@
-// Bodies that lose heat: a slab by convection, a slab and a half space to the ground, a drop by radiation; and where the energy goes.
+// Bodies that lose heat: a slab by convection, a slab and a half space to the ground, a drop by radiation; and where
+// the energy goes.
 
 #include "bench/cases/tank.h"
 #include "tests/accuracy/measure.h"
@@ -73,7 +74,8 @@ double biot_root(double biot, int n) {
   return 0.5 * (lower + upper);
 }
 
-/// A slab of half width L that convects from both faces after Fo = k t/L^2, at y/L from its middle: the eigenfunction series.
+/// A slab of half width L that convects from both faces after Fo = k t/L^2, at y/L from its middle: the eigenfunction
+/// series.
 double convecting_slab(double biot, double fourier, double y) {
   double sum = 0.0;
   for (int n = 1; n <= 60; ++n) {
@@ -95,7 +97,8 @@ double convecting_error(double spacing, double biot, double jitter, double& lost
     const double until = fourier * 0.25;
     advance_by(solver, until - time, time);
     time = until;
-    worst = std::max(worst, profile_error(solver, [&](double y) { return convecting_slab(biot, fourier, (y - 0.5) / 0.5); }));
+    worst = std::max(worst,
+                     profile_error(solver, [&](double y) { return convecting_slab(biot, fourier, (y - 0.5) / 0.5); }));
   }
   double mean = 0.0;
   for (const double t : solver.particles().temperature) mean += t / static_cast<double>(solver.particles().size());
@@ -148,16 +151,18 @@ double slab_on_ground(double time, double y) {
 double ground_error(double spacing, double jitter, double& lost_error) {
   Slab slab = make_slab(spacing, jitter);
   const double specific_heat = 2.0;
-  Solver<2, double> solver(slab.parameters, {warm_material(specific_heat)}, make_floor(cold), std::move(slab.particles));
+  Solver<2, double> solver(slab.parameters, {warm_material(specific_heat)}, make_floor(cold),
+                           std::move(slab.particles));
   solver.prepare();
   double time = 0.0, worst = 0.0;
   for (const double until : {0.01, 0.05, 0.2, 0.5}) {
     advance_by(solver, until - time, time);
     time = until;
     // Until 0.05 the top has not felt it: the half space's error function.
-    worst = std::max(worst, profile_error(solver, [&](double y) {
-                       return time < 0.03 ? std::erf(y / (2.0 * std::sqrt(diffusivity * time))) : slab_on_ground(time, y);
-                     }));
+    worst =
+        std::max(worst, profile_error(solver, [&](double y) {
+                   return time < 0.03 ? std::erf(y / (2.0 * std::sqrt(diffusivity * time))) : slab_on_ground(time, y);
+                 }));
   }
   double mean = 0.0;
   for (const double t : solver.particles().temperature) mean += t / static_cast<double>(solver.particles().size());
@@ -181,7 +186,11 @@ TEST(Cooling, IntoTheGround) {
               .error = error.back(),
               .bar = 0.02,
               .order = convergence_order(spacing, error)});
-  report_row({.problem = problem, .quantity = "energy to the wall / enthalpy lost - 1", .resolution = resolution, .error = lost, .bar = 1e-6});
+  report_row({.problem = problem,
+              .quantity = "energy to the wall / enthalpy lost - 1",
+              .resolution = resolution,
+              .error = lost,
+              .bar = 1e-6});
   double unused = 0.0;
   report_row({.problem = problem,
               .quantity = "temperature / first difference; max (jitter 0.1)",
@@ -190,7 +199,8 @@ TEST(Cooling, IntoTheGround) {
               .bar = 0.02});
 }
 
-/// Time in which a lumped body, per area and heat capacity, cools by radiation alone from `from` to `to` [K] towards `ambient`:
+/// Time in which a lumped body, per area and heat capacity, cools by radiation alone from `from` to `to` [K] towards
+/// `ambient`:
 ///   e sigma A/(m c) t = [ln((T + Ta)/(T - Ta)) + 2 atan(T/Ta)]/(4 Ta^3) between them.
 double radiation_time(double rate, double ambient, double from, double to) {
   const auto primitive = [&](double t) {
@@ -211,7 +221,8 @@ TEST(Cooling, DropThatRadiates) {
   const double radius = spacing * std::cbrt(0.75 * n / pi);
   m.heat->emissivity = emissivity;
   // Bi = 4 e sigma T^3 R/conductivity at the start.
-  m.heat->diffusivity = 4.0 * emissivity * stefan_boltzmann * std::pow(start, 3) * radius / 0.02 / (density * specific_heat);
+  m.heat->diffusivity =
+      4.0 * emissivity * stefan_boltzmann * std::pow(start, 3) * radius / 0.02 / (density * specific_heat);
   Solver<3, float> solver(parameters, {m}, {}, std::move(p));
   solver.prepare();
 

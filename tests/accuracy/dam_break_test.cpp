@@ -1,7 +1,8 @@
-// The collapse of a water column: its front against three sets of experiments, and its late speed, which hardly depends on the fitted origin
-// of time. Bar: the spread between the experiments as published where all three overlap, and 3 %.
+// The collapse of a water column: its front against three sets of experiments, and its late speed, which hardly depends
+// on the fitted origin of time. Bar: the spread between the experiments as published where all three overlap, and 3 %.
 
 #include "bench/cases/dam_break.h"
+
 #include "tests/accuracy/measure.h"
 
 #include <fmt/format.h>
@@ -39,8 +40,7 @@ TEST(DamBreak, FrontFollowsTheExperiments) {
     report_row({problem, "front position relative; max; origin of time fitted", resolution,
                 compare(run, sets[k], origin).max, bar});
     report_row({problem, "that origin [sqrt(a/2g)]", resolution, origin});
-    report_row(
-        {problem, "front position relative; max; both from T = 0", resolution, compare(run, sets[k], 0.0).max});
+    report_row({problem, "front position relative; max; both from T = 0", resolution, compare(run, sets[k], 0.0).max});
     const double from = 2.3, to = 2.95;
     const double ours = front_at(run, to - origin) - front_at(run, from - origin);
     report_row({problem, "front speed relative; T 2.3 to 2.95", resolution,

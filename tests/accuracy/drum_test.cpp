@@ -1,4 +1,5 @@
-// Walls that turn: a drum carries what it holds to a rigid rotation; Couette flow between a cylinder that turns and one that does not.
+// Walls that turn: a drum carries what it holds to a rigid rotation; Couette flow between a cylinder that turns and one
+// that does not.
 
 #include "bench/cases/set_up.h"
 #include "tests/accuracy/measure.h"
@@ -46,7 +47,8 @@ Obstacle<2> make_cylinder(double radius, bool around_fluid, double turns) {
   return cylinder;
 }
 
-/// Runs fluid between the cylinders from rest for `duration` [s] and returns what |v - expected(r)| comes to over spin R.
+/// Runs fluid between the cylinders from rest for `duration` [s] and returns what |v - expected(r)| comes to over spin
+/// R.
 Norms measure_flow(double inner, double inner_spin, double outer_spin, double spacing, double duration,
                    const std::function<double(double)>& expected) {
   double volume = 0.0;
@@ -60,7 +62,8 @@ Norms measure_flow(double inner, double inner_spin, double outer_spin, double sp
   Colliders<2> colliders;
   colliders.add(make_cylinder(outer, true, outer_spin));
   if (inner > 0.0) colliders.add(make_cylinder(inner, false, inner_spin));
-  Solver<2, double> solver(parameters, {newtonian_material(density, viscosity)}, std::move(colliders), std::move(fluid));
+  Solver<2, double> solver(parameters, {newtonian_material(density, viscosity)}, std::move(colliders),
+                           std::move(fluid));
   solver.prepare();
   advance_by(solver, duration);
   std::vector<double> differences;
@@ -78,7 +81,8 @@ Norms measure_flow(double inner, double inner_spin, double outer_spin, double sp
 TEST(TurningWalls, ADrumCarriesItsFluidToRigidRotation) {
   const std::string problem = "spin-up in a drum; no slip";
   for (const double across : {10.0, 20.0}) {
-    const Norms error = measure_flow(0.0, 0.0, spin, outer / across, full_run() ? 10.0 : 4.0, [](double r) { return spin * r; });
+    const Norms error =
+        measure_flow(0.0, 0.0, spin, outer / across, full_run() ? 10.0 : 4.0, [](double r) { return spin * r; });
     const std::string resolution = fmt::format("{:g} over the radius", across);
     report_row({problem, "velocity against omega r over omega R; l2", resolution, error.l2, 0.01});
     report_row({problem, "the same; max", resolution, error.max});
@@ -91,7 +95,8 @@ TEST(TurningWalls, CouetteBetweenCylinders) {
   const std::string problem = "Couette flow between cylinders; the inner one turns";
   for (const double across : {10.0, 20.0}) {
     if (across > 10.0 && !full_run()) continue;
-    const Norms error = measure_flow(inner, spin, 0.0, (outer - inner) / across, 2.0, [&](double r) { return a * r + b / r; });
+    const Norms error =
+        measure_flow(inner, spin, 0.0, (outer - inner) / across, 2.0, [&](double r) { return a * r + b / r; });
     const std::string resolution = fmt::format("{:g} across the gap", across);
     report_row({problem, "velocity against a r + b/r over omega R_outer; l2", resolution, error.l2, 0.02});
     report_row({problem, "the same; max", resolution, error.max});

@@ -2,6 +2,7 @@
 // lava benchmarks, both against lubrication theory.
 
 #include "bench/cases/gravity_current.h"
+
 #include "bench/cases/set_up.h"
 #include "tests/accuracy/measure.h"
 

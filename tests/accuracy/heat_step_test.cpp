@@ -1,6 +1,7 @@
 // A step of temperature on a jittered lattice against the error function, and the rate at which it spreads.
 
 #include "bench/cases/heat_step.h"
+
 #include "bench/cases/set_up.h"
 #include "core/sph/kernel.h"
 #include "tests/accuracy/measure.h"
@@ -133,7 +134,8 @@ std::vector<double> diffuse_by_hand(const Solver<2, double>& solver, double fact
     std::vector<Mat<2>> moment(n, Mat<2>::Zero());
     for (const auto& [i, j, x, weight] : pairs) {
       const double balanced = weight * std::clamp(1.0 + x.dot(lambda[i] - lambda[j]), 0.2, 1.8);
-      now[i] += advance * diffusivity * factor * balanced * (before[i] - before[j]) * 0.5 * (1.0 / theta[i] + 1.0 / theta[j]);
+      now[i] +=
+          advance * diffusivity * factor * balanced * (before[i] - before[j]) * 0.5 * (1.0 / theta[i] + 1.0 / theta[j]);
       trace[i] -= 0.5 * balanced * x.squaredNorm();
       imbalance[i] += weight * (1.0 - x.dot(lambda[j])) * x;
       moment[i] -= weight * x * x.transpose();

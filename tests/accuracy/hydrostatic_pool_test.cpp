@@ -2,6 +2,7 @@
 // - y).
 
 #include "bench/cases/hydrostatic_pool.h"
+
 #include "tests/accuracy/measure.h"
 
 #include <fmt/format.h>

@@ -18,8 +18,8 @@ namespace {
 constexpr double degrees = std::numbers::pi / 180.0;
 constexpr double depth = 0.5;  ///< scale of the pressure, of the sound speed [m]; about how deep the pools are
 
-/// [s] from the start: particles have moved off the lattice to where they rest. They are crowded where sites were moved off
-/// the walls, and spread for seconds; the pressure is too low meanwhile.
+/// [s] from the start: particles have moved off the lattice to where they rest. They are crowded where sites were moved
+/// off the walls, and spread for seconds; the pressure is too low meanwhile.
 constexpr double formed = 6.0;
 
 /// What holds the water: y is up.
@@ -191,7 +191,8 @@ double gauge_excess(const Solver<3, float>& solver, double level, const Vec3& po
   return weights > 0.0 ? sum / weights : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Errors along the wetted wall, two spacings below the level and more, of the water's depth; not a number where no particle is near.
+/// Errors along the wetted wall, two spacings below the level and more, of the water's depth; not a number where no
+/// particle is near.
 std::vector<double> pressure_errors(const Solver<3, float>& solver, const Vessel& v, double level, double spacing) {
   double lowest = level;
   for (const Vec3& x : solver.particles().position) lowest = std::min(lowest, x[1]);
@@ -265,7 +266,8 @@ void test_pool(Vessel (*make)(double), int n_deep) {
   }
   const std::string problem = fmt::format("pool on a mesh in 3D; {}", v.name);
   const std::string resolution = fmt::format("{} particles; {} triangles; {:g} s", n, v.facets.size(), duration);
-  report_row({problem, "pressure on the wall / rho g H; mean from 6 s on; max over the wall", resolution, largest(summed, 1.0 / n_samples), 0.03});
+  report_row({problem, "pressure on the wall / rho g H; mean from 6 s on; max over the wall", resolution,
+              largest(summed, 1.0 / n_samples), 0.03});
   report_row({problem, "the same; max at any moment", resolution, worst, 0.03});
   report_row({problem, "fastest particle at the end [m/s]", resolution, speed, 0.1});
   report_row({problem, "drift of particles [spacings]; rms", resolution,

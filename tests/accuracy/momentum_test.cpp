@@ -80,8 +80,8 @@ void report_momentum() {
               .resolution = resolution,
               .error = (after.linear - before.linear).norm() / before.linear_scale,
               .bar = 1e-10});
-  // Kept to the order of a time step only, and mostly XSPH's: without it 9e-8 in 2D and 5e-8 in 3D were measured, and half the
-  // step halves either figure.
+  // Kept to the order of a time step only, and mostly XSPH's: without it 9e-8 in 2D and 5e-8 in 3D were measured, and
+  // half the step halves either figure.
   report_row({.problem = problem,
               .quantity = "change of angular momentum / sum m x v",
               .resolution = resolution,

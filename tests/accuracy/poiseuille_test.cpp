@@ -2,6 +2,7 @@
 // at a wall and hourglass control are worth together.
 
 #include "bench/cases/poiseuille.h"
+
 #include "tests/accuracy/measure.h"
 
 #include <fmt/format.h>

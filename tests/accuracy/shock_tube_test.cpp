@@ -2,6 +2,7 @@
 // Riemann solution.
 
 #include "bench/cases/shock_tube.h"
+
 #include "tests/accuracy/measure.h"
 
 #include <fmt/format.h>
@@ -21,12 +22,18 @@ TEST(ShockTube, ConvergesToTheRiemannSolution) {
     // [S]'s own 400 particles are measured without a bar, for comparison with its figures 16-19.
     const bool barred = refinement > 1;
     const auto report = [&](const std::string& quantity, double error, double bar) {
-      report_row({.problem = "shock tube", .quantity = quantity, .resolution = fmt::format("{} particles", 400 * refinement), .error = error,
+      report_row({.problem = "shock tube",
+                  .quantity = quantity,
+                  .resolution = fmt::format("{} particles", 400 * refinement),
+                  .error = error,
                   .bar = barred ? std::optional(bar) : std::nullopt});
     };
     const double l1 = density_error(profile);
     // A shock and a contact are smeared over a fixed number of particles: order one at best.
-    report_row({.problem = "shock tube", .quantity = "density L1 / mean", .resolution = fmt::format("{} particles", 400 * refinement), .error = l1,
+    report_row({.problem = "shock tube",
+                .quantity = "density L1 / mean",
+                .resolution = fmt::format("{} particles", 400 * refinement),
+                .error = l1,
                 .bar = barred ? std::optional(0.02) : std::nullopt,
                 .order = barred ? std::optional(std::log2(previous / l1)) : std::nullopt,
                 .least_order = barred ? std::optional(0.85) : std::nullopt});

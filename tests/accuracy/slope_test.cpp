@@ -1,6 +1,7 @@
 // A viscoplastic layer on a slope: below the critical thickness it rests, above it flows, and the thickness is right.
 
 #include "bench/cases/slope.h"
+
 #include "tests/accuracy/measure.h"
 
 #include <gtest/gtest.h>

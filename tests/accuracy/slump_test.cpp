@@ -1,6 +1,7 @@
 // The slump of a Bingham cylinder under its own weight, 3D, against the formula of Pashias et al. (1996).
 
 #include "bench/cases/slump.h"
+
 #include "tests/accuracy/measure.h"
 
 #include <fmt/format.h>

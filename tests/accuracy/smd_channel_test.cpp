@@ -1,8 +1,9 @@
 // Steady plane channel flow of a viscoplastic fluid [P 6-1] between two walls, with the relaxed stress: profile and
 // plug.
 
-#include "bench/cases/set_up.h"
 #include "bench/cases/smd_channel.h"
+
+#include "bench/cases/set_up.h"
 #include "tests/accuracy/measure.h"
 
 #include <fmt/format.h>

@@ -1,6 +1,7 @@
 // A melting front: a solid at its melting point on a hot wall, one phase, against Neumann's similarity solution.
 
 #include "bench/cases/stefan.h"
+
 #include "tests/accuracy/measure.h"
 
 #include <fmt/format.h>
@@ -22,12 +23,13 @@ TEST(Stefan, FrontOfAMeltingSolid) {
       spacing.push_back(coarser * finest);
       error.push_back(measure_front(spacing.back(), stefan_number, 0.0, farthest).error);
     }
-    report_row({.problem = fmt::format("Stefan front; Ste = {}", stefan_number),
-                .quantity = "front / exact - 1; max over times",
-                .resolution = fmt::format("{:.0f} to {:.0f} in the column", 1.0 / spacing.front(), 1.0 / spacing.back()),
-                .error = error.back(),
-                .bar = 0.02,
-                .order = convergence_order(spacing, error)});
+    report_row(
+        {.problem = fmt::format("Stefan front; Ste = {}", stefan_number),
+         .quantity = "front / exact - 1; max over times",
+         .resolution = fmt::format("{:.0f} to {:.0f} in the column", 1.0 / spacing.front(), 1.0 / spacing.back()),
+         .error = error.back(),
+         .bar = 0.02,
+         .order = convergence_order(spacing, error)});
     report_row({.problem = fmt::format("Stefan front; Ste = {}", stefan_number),
                 .quantity = "front / exact - 1; max over times (jitter 0.1)",
                 .resolution = fmt::format("{:.0f} in the column", 1.0 / finest),

@@ -1,6 +1,7 @@
 // Water discharge [S 4.5.3.2] against Torricelli.
 
 #include "bench/cases/water_discharge.h"
+
 #include "tests/accuracy/measure.h"
 
 #include <fmt/format.h>

@@ -11,7 +11,8 @@
 namespace smelt {
 namespace {
 
-const ExpectedErrors stored{{"channel", {{"J = 15 at 20", 0.1}, {"J = 15 at 40", 0.01}}}, {"slump", {{"clay at 8", 0.2}}}};
+const ExpectedErrors stored{{"channel", {{"J = 15 at 20", 0.1}, {"J = 15 at 40", 0.01}}},
+                            {"slump", {{"clay at 8", 0.2}}}};
 
 std::vector<RunRow> channel_rows(double coarse, double fine) {
   return {{"channel", "J = 15", 20.0, 160, coarse, 0.1, ""}, {"channel", "J = 15", 40.0, 320, fine, 0.4, ""}};
@@ -25,7 +26,8 @@ TEST(Expected, TakesWhatIsNoMoreThanTenPercentWorse) {
 TEST(Expected, RefusesWhatIsWorse) {
   const auto complaints = compare_with_expected(stored, channel_rows(0.1101, 0.01));
   ASSERT_EQ(complaints.size(), 1u);
-  EXPECT_NE(complaints[0].find("channel, J = 15 at 20: the error is 0.1101, stored is 0.1"), std::string::npos) << complaints[0];
+  EXPECT_NE(complaints[0].find("channel, J = 15 at 20: the error is 0.1101, stored is 0.1"), std::string::npos)
+      << complaints[0];
 }
 
 TEST(Expected, RefusesWhatIsNotANumber) {

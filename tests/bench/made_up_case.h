@@ -27,7 +27,8 @@ inline Case made_up_case(const std::string& name) {
           .full = {10, 20, 40, 80},
           .run = [](std::size_t method, double resolution) {
             if (method == 1 && resolution == 20.0) fail("no, thank you");
-            Measurement measured{.error = 2.0 / (resolution * resolution), .cpu_seconds = 0.001 * resolution, .n_particles = 7};
+            Measurement measured{
+                .error = 2.0 / (resolution * resolution), .cpu_seconds = 0.001 * resolution, .n_particles = 7};
             measured.profile = Profile{{{0.0, 1.0}, {0.0, 2.0}}, {{0.0, 1.0}, {0.0, 2.5}}};
             return measured;
           }};

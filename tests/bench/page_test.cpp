@@ -1,4 +1,5 @@
-// The page and the CSV behind it. Where gnuplot is not installed the plots are not tested: `./smelt report` installs it, `./smelt test` does not.
+// The page and the CSV behind it. Where gnuplot is not installed the plots are not tested: `./smelt report` installs
+// it, `./smelt test` does not.
 
 #include "bench/report/page.h"
 
@@ -39,8 +40,8 @@ TEST(Page, HasNoOrderOfOneRun) {
 TEST(Page, StatesWhatItIsAndHowFarItIs) {
   const PageHead head{"a machine, 2 cores", "0.1.0", "2026-01-31 12:34 UTC", "./smelt report --quick", true};
   const std::string page = write_page(head, {{"<tr><td>one's row</td></tr>", "<section>one</section>"}}, 2);
-  for (const char* text : {"a machine, 2 cores", "0.1.0", "2026-01-31 12:34 UTC", "./smelt report --quick", "one's row", "<section>one</section>",
-                           "1 of 2 sections so far"})
+  for (const char* text : {"a machine, 2 cores", "0.1.0", "2026-01-31 12:34 UTC", "./smelt report --quick", "one's row",
+                           "<section>one</section>", "1 of 2 sections so far"})
     EXPECT_NE(page.find(text), std::string::npos) << text;
   EXPECT_EQ(write_page(head, {{"", "one"}, {"", "two"}}, 2).find("so far"), std::string::npos);
 }
@@ -49,7 +50,8 @@ TEST(Page, ShowsPlotsFiguresAndFailures) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const std::filesystem::path folder = testing::TempDir();
   const auto [summary, section] = write_case_section(run_cases({made_up_case("one")})[0], true, folder);
-  EXPECT_EQ(count(summary, "<td>0.00125</td><td>0.01</td><td>yes</td><td>2.00</td>"), 2u) << summary;  // of both methods, at 40
+  EXPECT_EQ(count(summary, "<td>0.00125</td><td>0.01</td><td>yes</td><td>2.00</td>"), 2u)
+      << summary;                         // of both methods, at 40
   EXPECT_EQ(count(section, "<svg"), 3u);  // cost, convergence, profile
   EXPECT_EQ(count(section, "</svg>"), 3u);
   EXPECT_EQ(section.find("<?xml"), std::string::npos);
@@ -62,14 +64,18 @@ TEST(Page, ShowsPlotsFiguresAndFailures) {
 
 TEST(Gnuplot, LeavesOutWhatALogarithmCannotShow) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
-  const Plot plot{"x", "it's y", true, {{"one", {{1.0, 2.0, 3.0}, {0.0, -1.0, std::nan("")}}, Series::Look::line, 0}}, {}};
+  const Plot plot{
+      "x", "it's y", true, {{"one", {{1.0, 2.0, 3.0}, {0.0, -1.0, std::nan("")}}, Series::Look::line, 0}}, {}};
   EXPECT_EQ(draw_plot(plot, "empty", testing::TempDir()).find("<svg"), std::string::npos);
 }
 
 TEST(Csv, HasARowForEveryRun) {
   const std::string csv = write_runs_csv(to_rows(run_cases({made_up_case("one")})[0]));
   EXPECT_EQ(count(csv, "\n"), 7u);
-  EXPECT_NE(csv.find("case,method,resolution,particles,error,cpu_seconds,failure\n\"one\",\"smooth\",10,7,0.02,0.01,\n"), std::string::npos) << csv;
+  EXPECT_NE(
+      csv.find("case,method,resolution,particles,error,cpu_seconds,failure\n\"one\",\"smooth\",10,7,0.02,0.01,\n"),
+      std::string::npos)
+      << csv;
   EXPECT_NE(csv.find("\"one\",\"fails \"\"at\"\" 20\",20,,,,\"no, thank you\"\n"), std::string::npos) << csv;
 }
 

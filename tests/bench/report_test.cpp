@@ -24,7 +24,8 @@ TEST(Report, EveryCaseSaysWhatItIs) {
     EXPECT_TRUE(problem.measures.ends_with(".") && problem.good.ends_with("."));
     EXPECT_GE(problem.quick.size(), 3u);
     EXPECT_LE(problem.full.size(), 6u);
-    EXPECT_TRUE(std::is_sorted(problem.quick.begin(), problem.quick.end()) && std::is_sorted(problem.full.begin(), problem.full.end()));
+    EXPECT_TRUE(std::is_sorted(problem.quick.begin(), problem.quick.end()) &&
+                std::is_sorted(problem.full.begin(), problem.full.end()));
     EXPECT_FALSE(problem.methods.empty());
     EXPECT_GT(problem.good_error, 0.0);
   }
@@ -48,7 +49,8 @@ TEST(Report, NamesTheCasesWhereThereIsNoSuchOne) {
     select({made_up_case("channel"), made_up_case("slump")}, {"chanel"});
     FAIL() << "nothing was thrown";
   } catch (const Error& error) {
-    EXPECT_STREQ(error.what(), "there is no case \"chanel\" (did you mean \"channel\"?); cases are channel, slump, stability");
+    EXPECT_STREQ(error.what(),
+                 "there is no case \"chanel\" (did you mean \"channel\"?); cases are channel, slump, stability");
   }
 }
 
@@ -71,7 +73,8 @@ TEST(Report, LosesNothingToAFailure) {
   const std::string page = read_file(folder / "index.html");
   EXPECT_NE(page.find("<section id=\"first\">"), std::string::npos);
   EXPECT_NE(page.find("<section id=\"second\">"), std::string::npos);
-  for (const char* file : {"runs.csv", "profile_first.csv", "profile_second.csv"}) EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
+  for (const char* file : {"runs.csv", "profile_first.csv", "profile_second.csv"})
+    EXPECT_TRUE(std::filesystem::exists(folder / file)) << file;
 }
 
 /// With gnuplot: a stored error that is met, and one that is not.

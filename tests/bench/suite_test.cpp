@@ -28,7 +28,8 @@ TEST(Suite, AFailureIsThatOfItsRunAlone) {
   const auto results = run_cases({made_up_case("one"), made_up_case("two")});
   for (const CaseResult& result : results) {
     EXPECT_TRUE(result.failed());
-    for (const auto& run : result.runs) EXPECT_EQ(run.failure, run.method == 1 && run.resolution == 20.0 ? "no, thank you" : "");
+    for (const auto& run : result.runs)
+      EXPECT_EQ(run.failure, run.method == 1 && run.resolution == 20.0 ? "no, thank you" : "");
   }
 }
 
@@ -59,7 +60,9 @@ TEST(Suite, EndsWhereTheUserStops) {
 
 TEST(Suite, PassesOnWhatItsCallerThrows) {
   Progress silent;
-  EXPECT_THROW(run_suite({made_up_case("one"), made_up_case("two")}, true, 2, silent, [](CaseResult) { fail("the disk is full"); }), Error);
+  EXPECT_THROW(run_suite({made_up_case("one"), made_up_case("two")}, true, 2, silent,
+                         [](CaseResult) { fail("the disk is full"); }),
+               Error);
 }
 
 }  // namespace

@@ -3,15 +3,15 @@
 
 #include "io/atomic_file.h"
 
-#include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
+#include <fcntl.h>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <string>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <vector>
 
 namespace smelt {
@@ -28,7 +28,8 @@ struct Result {
 class CommandLine : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::path(testing::TempDir()) / ("smelt_cli_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
+    folder_ = fs::path(testing::TempDir()) /
+              ("smelt_cli_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()));
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }
@@ -113,7 +114,8 @@ height = 90
     std::size_t n = 0;
     for (const auto& entry : fs::directory_iterator(a)) {
       ++n;
-      EXPECT_TRUE(read_file(entry.path()) == read_file(b / entry.path().filename())) << entry.path() << " and its twin differ";
+      EXPECT_TRUE(read_file(entry.path()) == read_file(b / entry.path().filename()))
+          << entry.path() << " and its twin differ";
     }
     EXPECT_EQ(n, expected_count);
   }

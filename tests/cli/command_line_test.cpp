@@ -1,18 +1,17 @@
 // The program as a user meets it: the real binary, its files, its exit codes.
 
+#include "tests/cli/command_line.h"
+
 #include "io/atomic_file.h"
 #include "io/exr.h"
 #include "io/obj.h"
 #include "io/particles_vdb.h"
 #include "io/png.h"
-#include "tests/cli/command_line.h"
 #include "tests/source_folder.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-#include <sys/resource.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <chrono>
@@ -22,6 +21,8 @@
 #include <fstream>
 #include <functional>
 #include <string>
+#include <sys/resource.h>
+#include <sys/wait.h>
 #include <thread>
 #include <vector>
 
@@ -124,7 +125,8 @@ TEST_F(CommandLine, InterruptedItSaysSoAndKeepsWhatIsDone) {
 }
 
 TEST_F(CommandLine, ABadSceneIsExitThreeAndNothingIsWritten) {
-  const Result result = run({"run", small_scene(), "-o", output("out"), "--set", "shot.framse=3", "--set", "particles.count=-1"});
+  const Result result =
+      run({"run", small_scene(), "-o", output("out"), "--set", "shot.framse=3", "--set", "particles.count=-1"});
   EXPECT_EQ(result.status, 3);
   EXPECT_NE(result.err.find("2 errors"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("did you mean `frames`?"), std::string::npos) << result.err;
@@ -134,11 +136,14 @@ TEST_F(CommandLine, ABadSceneIsExitThreeAndNothingIsWritten) {
   EXPECT_FALSE(fs::exists(output("out")));
 }
 
-// Every bad obstacle or vent: exit 3, the key and its place in the scene or on the command line, and what to do. Nothing is simulated.
+// Every bad obstacle or vent: exit 3, the key and its place in the scene or on the command line, and what to do.
+// Nothing is simulated.
 TEST_F(CommandLine, BadCollidersSayWhereWhatAndHowToMend) {
   const std::string scene = small_scene();
-  std::ofstream(folder_ / "nan.asc") << "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 0 0\n0 nan 0\n0 0 0\n";
-  std::ofstream(folder_ / "bad.toml") << std::ifstream(scene).rdbuf() << "[[collider]]\nmesh = \"assets/bad/empty.obj\"\n";
+  std::ofstream(folder_ / "nan.asc")
+      << "ncols 3\nnrows 3\nxllcorner 0\nyllcorner 0\ncellsize 1\n0 0 0\n0 nan 0\n0 0 0\n";
+  std::ofstream(folder_ / "bad.toml") << std::ifstream(scene).rdbuf()
+                                      << "[[collider]]\nmesh = \"assets/bad/empty.obj\"\n";
   const std::string in_file = (folder_ / "bad.toml").string();
   struct Case {
     std::string scene;
@@ -150,12 +155,15 @@ TEST_F(CommandLine, BadCollidersSayWhereWhatAndHowToMend) {
       {scene, {"collider.0.mesh=assets/bad/nan.obj"}, {"collider.0.mesh", "nan.obj", "--set"}},
       {scene, {"collider.0.mesh=" + (folder_ / "nan.asc").string()}, {"collider.0.mesh", "nan.asc", "7"}},
       {scene, {"collider.0.mesh=assets/bad/not_a_mesh.obj"}, {"collider.0.mesh", "not_a_mesh.obj"}},
-      {scene, {"collider.0.mesh=assets/bad/open_box.obj", "collider.0.mass_kg=5"}, {"collider.0.mesh", "a rigid body needs a closed mesh"}},
+      {scene,
+       {"collider.0.mesh=assets/bad/open_box.obj", "collider.0.mass_kg=5"},
+       {"collider.0.mesh", "a rigid body needs a closed mesh"}},
       {scene,
        {"collider.0.mesh=assets/sphere.obj", "collider.0.keyframe=[{ time_s = 1.0 }, { time_s = 0.5 }]"},
        {"collider.0.keyframe", "time_s"}},
       {scene,
-       {"emitter=[{ material = \"wax\", position_m = [3.0, -1.0, 0.0], radius_m = 0.2, flow_rate_m3_s = 0.1, temperature_K = 390 }]"},
+       {"emitter=[{ material = \"wax\", position_m = [3.0, -1.0, 0.0], radius_m = 0.2, flow_rate_m3_s = 0.1, "
+        "temperature_K = 390 }]"},
        {"emitter.0.position_m", "raise it by"}},
   };
   for (const Case& c : cases) {
@@ -163,7 +171,8 @@ TEST_F(CommandLine, BadCollidersSayWhereWhatAndHowToMend) {
     for (const std::string& set : c.set) arguments.insert(arguments.end(), {"--set", set});
     const Result result = run(arguments);
     EXPECT_EQ(result.status, 3) << result.err;
-    for (const std::string& word : c.words) EXPECT_NE(result.err.find(word), std::string::npos) << word << " is not in: " << result.err;
+    for (const std::string& word : c.words)
+      EXPECT_NE(result.err.find(word), std::string::npos) << word << " is not in: " << result.err;
     EXPECT_FALSE(fs::exists(fs::path(output("out")) / "particles" / "particles.0001.vdb"));
   }
 }
@@ -179,14 +188,17 @@ TEST_F(CommandLine, OddCollidersAreWarnedOf) {
     EXPECT_NE(result.err.find("collider.0.mesh"), std::string::npos) << result.err;
   };
   warns({"collider.0.mesh=assets/bad/inverted_box.obj", "collider.0.translate_m=[5,0,0]"}, "wound inward");
-  warns({"collider.0.mesh=assets/sphere.obj", "collider.0.scale=5000", "collider.0.translate_m=[0,-6000,0]"}, "enormous");
+  warns({"collider.0.mesh=assets/sphere.obj", "collider.0.scale=5000", "collider.0.translate_m=[0,-6000,0]"},
+        "enormous");
   warns({"collider.0.mesh=assets/sphere.obj", "collider.0.scale=0.0001", "collider.0.translate_m=[0,-1,0]"}, "tiny");
-  warns({"collider.0.mesh=assets/sphere.obj", "collider.0.scale=0.1", "collider.0.translate_m=[0,0.3,0]"}, "start inside this solid collider");
+  warns({"collider.0.mesh=assets/sphere.obj", "collider.0.scale=0.1", "collider.0.translate_m=[0,0.3,0]"},
+        "start inside this solid collider");
 }
 
 TEST_F(CommandLine, BenchAnswersForPeopleAndMachines) {
   EXPECT_NE(run({"bench", "step", "--particles", "500"}).out.find("million particle-steps/s"), std::string::npos);
-  EXPECT_NE(run({"bench", "terms", "--particles", "500", "--json"}).out.find("\"bytes_per_particle\""), std::string::npos);
+  EXPECT_NE(run({"bench", "terms", "--particles", "500", "--json"}).out.find("\"bytes_per_particle\""),
+            std::string::npos);
   const std::string shot = run({"bench", "thesis", "--shot", "wall"}).out;
   EXPECT_NE(shot.find("| wall | "), std::string::npos) << shot;
   EXPECT_EQ(shot.find("| candle | "), std::string::npos) << shot;
@@ -198,9 +210,12 @@ TEST_F(CommandLine, BenchAnswersForPeopleAndMachines) {
 TEST_F(CommandLine, ReportNamesItsCasesAndWhatItNeeds) {
   const Result unknown = run({"report", "chanel", "--quick", "--out", output("report")});
   EXPECT_EQ(unknown.status, 3);
-  EXPECT_NE(unknown.err.find("there is no case \"chanel\" (did you mean \"channel\"?); cases are channel, "), std::string::npos) << unknown.err;
+  EXPECT_NE(unknown.err.find("there is no case \"chanel\" (did you mean \"channel\"?); cases are channel, "),
+            std::string::npos)
+      << unknown.err;
   EXPECT_EQ(run({"report", "channel", "--check"}).status, 2);  // errors are stored of the quick suite alone
-  const Result without = run({"report", "channel", "--quick", "--out", output("report")}, [] { setenv("PATH", "/nowhere", 1); });
+  const Result without =
+      run({"report", "channel", "--quick", "--out", output("report")}, [] { setenv("PATH", "/nowhere", 1); });
   EXPECT_EQ(without.status, 3);
   EXPECT_NE(without.err.find("gnuplot-nox"), std::string::npos) << without.err;
   EXPECT_FALSE(fs::exists(output("report")));
@@ -276,35 +291,44 @@ TEST_F(CommandLine, PicturesThatCannotBeDrawnNameTheirKeyAndFile) {
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Result result = run(arguments);
     EXPECT_EQ(result.status, 3) << more.back() << result.err;
-    for (const std::string& text : texts) EXPECT_NE(result.err.find(text), std::string::npos) << text << ": " << result.err;
+    for (const std::string& text : texts)
+      EXPECT_NE(result.err.find(text), std::string::npos) << text << ": " << result.err;
   };
   expect_refusal({"--set", "camera.eye_m=[0.0, 0.3, 0.0]"}, {"camera.eye_m", "inside the fluid", "small.toml"});
   expect_refusal({"--set", "camera.width=16000", "--set", "camera.height=16000"}, {"camera.width", "GB of memory"});
   expect_refusal({"--set", "look.material=gold"}, {"look.material", "none of wax"});
   expect_refusal({"--set", "look.crust.plate_m=0.1"}, {"look.crust", "rest_position"});
-  expect_refusal({"--set", "environment.kind=image", "--set", "environment.image=no.exr"}, {"environment.image", "no.exr"});
+  expect_refusal({"--set", "environment.kind=image", "--set", "environment.image=no.exr"},
+                 {"environment.image", "no.exr"});
   expect_refusal({"--colour-by", "speed"}, {"--colour-by", "--look diagnostic"});
   expect_refusal({"--look", "diagnostic", "--colour-range", "5:1"}, {"--colour-range 5:1", "below"});
   expect_refusal({"--sheet", "4y3"}, {"--sheet 4y3", "4x3"});
   // Rest positions asked for after the simulation: the caches have none.
-  expect_refusal({"--set", "particles.rest_position=true", "--set", "look.crust.plate_m=0.1"}, {"look.crust", "simulate again"});
-  std::ofstream(folder_ / "lamp.toml") << read_file(small_scene()) << "[[light]]\nposition_m = [0.0, 2.0, 0.0]\nheight_m = 0.0\n";
+  expect_refusal({"--set", "particles.rest_position=true", "--set", "look.crust.plate_m=0.1"},
+                 {"look.crust", "simulate again"});
+  std::ofstream(folder_ / "lamp.toml") << read_file(small_scene())
+                                       << "[[light]]\nposition_m = [0.0, 2.0, 0.0]\nheight_m = 0.0\n";
   const Result lamp = run({"render", output("lamp.toml"), "-o", output("out")});
   EXPECT_EQ(lamp.status, 3);
   EXPECT_NE(lamp.err.find("light.0.height_m"), std::string::npos) << lamp.err;
   EXPECT_EQ(run({"render", small_scene(), "-o", output("out"), "--look", "sketch"}).status, 2);
-  EXPECT_EQ(run({"render", small_scene(), "-o", output("out"), "--look", "diagnostic", "--colour-by", "mood"}).status, 2);
+  EXPECT_EQ(run({"render", small_scene(), "-o", output("out"), "--look", "diagnostic", "--colour-by", "mood"}).status,
+            2);
 }
 
 TEST_F(CommandLine, DiagnosticPicturesAndSheets) {
   ASSERT_EQ(run({"run", small_scene(), "-o", output("out")}).status, 0);
   const fs::path out = output("out");
   for (const char* quantity : {"temperature", "viscosity", "density", "speed", "pressure"}) {
-    const Result result = run({"render", small_scene(), "-o", out.string(), "--look", "diagnostic", "--colour-by", quantity, "--frames", "2-3"});
+    const Result result = run({"render", small_scene(), "-o", out.string(), "--look", "diagnostic", "--colour-by",
+                               quantity, "--frames", "2-3"});
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_EQ(read_png(out / fmt::format("diagnostic/{}.0003.png", quantity)).width, 160);
   }
-  EXPECT_EQ(run({"render", small_scene(), "-o", out.string(), "--look", "diagnostic", "--surface", "wire", "--sheet", "2x2"}).status, 0);
+  EXPECT_EQ(
+      run({"render", small_scene(), "-o", out.string(), "--look", "diagnostic", "--surface", "wire", "--sheet", "2x2"})
+          .status,
+      0);
   EXPECT_GT(read_png(out / "sheet.temperature.png").width, 320);
   const Result sheet = run({"render", small_scene(), "-o", out.string(), "--sheet", "3x1"});
   EXPECT_EQ(sheet.status, 0) << sheet.err;
@@ -312,9 +336,12 @@ TEST_F(CommandLine, DiagnosticPicturesAndSheets) {
   EXPECT_GT(read_png(out / "sheet.png").width, 480);
   // A missing attribute.
   std::string cold = read_file(small_scene());
-  const auto cut = [&](const std::string& from, const std::string& to) { cold.replace(cold.find(from), from.size(), to); };
-  cut("viscosity = { law = \"smd\", index = 1.0, yield_stress_Pa = { cold = 4e4, hot = 10.0 }, consistency_Pa_sn = { cold = 4e3, hot = 100.0 }, "
-      "jump_number = { cold = 1000, hot = 15 } }",
+  const auto cut = [&](const std::string& from, const std::string& to) {
+    cold.replace(cold.find(from), from.size(), to);
+  };
+  cut("viscosity = { law = \"smd\", index = 1.0, "
+      "yield_stress_Pa = { cold = 4e4, hot = 10.0 }, consistency_Pa_sn = { cold = 4e3, "
+      "hot = 100.0 }, jump_number = { cold = 1000, hot = 15 } }",
       "viscosity = { law = \"inviscid\" }");
   cut("heat = {", "#");
   cut("temperature_K = { bottom", "#");
@@ -322,24 +349,29 @@ TEST_F(CommandLine, DiagnosticPicturesAndSheets) {
   cold.erase(cold.find("[ambient]"), cold.find("[camera]") - cold.find("[ambient]"));
   std::ofstream(folder_ / "cold.toml") << cold;
   ASSERT_EQ(run({"simulate", output("cold.toml"), "-o", output("cold"), "--frames", "1"}).status, 0);
-  const Result none = run({"render", output("cold.toml"), "-o", output("cold"), "--frames", "1", "--look", "diagnostic", "--colour-by", "viscosity"});
+  const Result none = run({"render", output("cold.toml"), "-o", output("cold"), "--frames", "1", "--look", "diagnostic",
+                           "--colour-by", "viscosity"});
   EXPECT_EQ(none.status, 3);
   EXPECT_NE(none.err.find("--colour-by viscosity"), std::string::npos) << none.err;
 }
 
 TEST_F(CommandLine, LayersAndSixteenBitsWhereAskedFor) {
-  const Result result = run({"run", small_scene(), "-o", output("out"), "--frames", "1-2", "--set", "render.exr=true", "--set", "render.png_bits=16"});
+  const Result result = run({"run", small_scene(), "-o", output("out"), "--frames", "1-2", "--set", "render.exr=true",
+                             "--set", "render.png_bits=16"});
   ASSERT_EQ(result.status, 0) << result.err;
   const LayeredImage image = read_exr(output("out") + "/frames/frame.0002.exr");
   EXPECT_EQ(image.width, 160);
   for (const char* name : {"R", "A", "albedo.G", "depth.Z", "normal.X", "position.Y", "temperature.T", "velocity.Z"})
-    EXPECT_TRUE(std::any_of(image.channels.begin(), image.channels.end(), [&](const ImageChannel& c) { return c.name == name; })) << name;
+    EXPECT_TRUE(std::any_of(image.channels.begin(), image.channels.end(), [&](const ImageChannel& c) {
+      return c.name == name;
+    })) << name;
   EXPECT_EQ(read_file(output("out") + "/frames/frame.0002.png")[24], 16);
 }
 
 TEST_F(CommandLine, ResumingAnotherSceneIsRefused) {
   ASSERT_EQ(run({"simulate", small_scene(), "-o", output("out"), "--frames", "1"}).status, 0);
-  const Result result = run({"simulate", small_scene(), "-o", output("out"), "--resume", "--set", "material.0.density_kg_m3=1000"});
+  const Result result =
+      run({"simulate", small_scene(), "-o", output("out"), "--resume", "--set", "material.0.density_kg_m3=1000"});
   EXPECT_EQ(result.status, 3);
   EXPECT_NE(result.err.find("another scene"), std::string::npos) << result.err;
 }
@@ -369,7 +401,8 @@ TEST_F(CommandLine, CheckAndInfoAnswer) {
   EXPECT_EQ(run({"info", small_scene()}).status, 3);
 }
 
-// Particles that come and go: caches, checkpoints, surfaces, pictures and the report with another number of them in every frame.
+// Particles that come and go: caches, checkpoints, surfaces, pictures and the report with another number of them in
+// every frame.
 TEST_F(CommandLine, AVentPoursTheSameOnAnyThreadsAndAfterAResume) {
   const fs::path scene = folder_ / "pour.toml";
   std::ofstream(scene) << R"(
@@ -429,9 +462,11 @@ height = 45
     EXPECT_NEAR(added, 1300.0 * poured, 1e-9);
     const double due = 0.06 * std::clamp((frame - 1) / 12.0 - 0.1, 0.0, 0.35);
     EXPECT_NEAR(poured, due, 0.51 * 0.12 * 0.12 * 3.1416 * 0.05) << "frame " << frame;
-    const ParticleFrame particles = read_particles(fs::path(output("one")) / fmt::format("particles/particles.{:04}.vdb", frame));
+    const ParticleFrame particles =
+        read_particles(fs::path(output("one")) / fmt::format("particles/particles.{:04}.vdb", frame));
     EXPECT_EQ(static_cast<double>(particles.size()), entry["particles"].get<double>());
-    EXPECT_TRUE(std::adjacent_find(particles.id.begin(), particles.id.end(), std::greater_equal<>()) == particles.id.end());
+    EXPECT_TRUE(std::adjacent_find(particles.id.begin(), particles.id.end(), std::greater_equal<>()) ==
+                particles.id.end());
     ids = particles.id;
   }
   EXPECT_EQ(report["frames"][0]["simulate"]["particles"], 0);

@@ -1,7 +1,8 @@
 // A frame of every scene, small, beside pictures that somebody has looked at.
 //
-// Metric: the root mean square over pixels of the distance in Oklab between shown and golden colour (delta E_OK), times 100; 2 is the
-// least difference that is seen side by side. SMELT_UPDATE_GOLDEN=1 writes the pictures of tests/data/golden anew: look at them.
+// Metric: the root mean square over pixels of the distance in Oklab between shown and golden colour (delta E_OK), times
+// 100; 2 is the least difference that is seen side by side. SMELT_UPDATE_GOLDEN=1 writes the pictures of
+// tests/data/golden anew: look at them.
 
 #include "io/png.h"
 #include "render/colour_map.h"
@@ -25,7 +26,8 @@ namespace fs = std::filesystem;
 
 Vec3 oklab_of(const std::array<std::uint8_t, 3>& pixel) {
   Vec3 linear;
-  for (std::size_t c = 0; c < 3; ++c) linear[static_cast<int>(c)] = linear_from_srgb(static_cast<float>(pixel[c]) / 255.0f);
+  for (std::size_t c = 0; c < 3; ++c)
+    linear[static_cast<int>(c)] = linear_from_srgb(static_cast<float>(pixel[c]) / 255.0f);
   return oklab_from_rgb(linear);
 }
 
@@ -47,7 +49,8 @@ Difference compare(const ImageRgb8& shown, const ImageRgb8& golden) {
   return d;
 }
 
-/// A frame of a scene; what pours shows something only later, and coarser, but before drops roll apart: then every rounding shows.
+/// A frame of a scene; what pours shows something only later, and coarser, but before drops roll apart: then every
+/// rounding shows.
 struct Shot {
   std::string scene;
   int frame = 1;
@@ -60,19 +63,24 @@ struct Shot {
   }
 };
 
-void PrintTo(const Shot& shot, std::ostream* out) { *out << shot.scene; }
+void PrintTo(const Shot& shot, std::ostream* out) {
+  *out << shot.scene;
+}
 
 class GoldenFrame : public testing::TestWithParam<Shot> {};
 
 TEST_P(GoldenFrame, LooksAsItDid) {
   const Shot& shot = GetParam();
   const std::string name = shot.name();
-  const fs::path folder = fs::path(testing::TempDir()) / ("smelt_golden_" + name), golden = source_folder() / "tests/data/golden" / (name + ".png");
+  const fs::path folder = fs::path(testing::TempDir()) / ("smelt_golden_" + name),
+                 golden = source_folder() / "tests/data/golden" / (name + ".png");
   fs::remove_all(folder);
   const auto run = [&](const std::string& verb, int first) {
     const std::string command = fmt::format(
-        "'{}' {} '{}' -o '{}' --frames {}-{} --set camera.width=192 --set camera.height=108 --set render.samples=8 {} > '{}' 2>&1", SMELT_PROGRAM, verb,
-        (source_folder() / "scenes" / (shot.scene + ".toml")).string(), folder.string(), first, shot.frame, shot.settings, folder.string() + ".log");
+        "'{}' {} '{}' -o '{}' --frames {}-{} --set camera.width=192 --set camera.height=108 --set render.samples=8 {} "
+        "> '{}' 2>&1",
+        SMELT_PROGRAM, verb, (source_folder() / "scenes" / (shot.scene + ".toml")).string(), folder.string(), first,
+        shot.frame, shot.settings, folder.string() + ".log");
     ASSERT_EQ(std::system(command.c_str()), 0) << folder << ".log";
   };
   run("simulate", 1);
@@ -94,9 +102,12 @@ TEST_P(GoldenFrame, LooksAsItDid) {
 
 // The rest of scenes/thesis are links to these.
 INSTANTIATE_TEST_SUITE_P(Scenes, GoldenFrame,
-                         testing::Values(Shot{"melting_bunny"}, Shot{"chair_hand"}, Shot{"candle"}, Shot{"lava_volcano", 28, "--set particles.spacing_m=6"},
-                                         Shot{"lava_sugarloaf", 40, "--set particles.spacing_m=8"}, Shot{"thesis/wall"}, Shot{"thesis/hand"}, Shot{"thesis/candle"},
-                                         Shot{"thesis/gargoyle"}, Shot{"thesis/letters", 1, "--set camera.height=77"}, Shot{"thesis/terrain", 28, "--set particles.spacing_m=6"}),
+                         testing::Values(Shot{"melting_bunny"}, Shot{"chair_hand"}, Shot{"candle"},
+                                         Shot{"lava_volcano", 28, "--set particles.spacing_m=6"},
+                                         Shot{"lava_sugarloaf", 40, "--set particles.spacing_m=8"}, Shot{"thesis/wall"},
+                                         Shot{"thesis/hand"}, Shot{"thesis/candle"}, Shot{"thesis/gargoyle"},
+                                         Shot{"thesis/letters", 1, "--set camera.height=77"},
+                                         Shot{"thesis/terrain", 28, "--set particles.spacing_m=6"}),
                          [](const auto& test) { return test.param.name(); });
 
 TEST(GoldenMetric, SeesAShiftAndOnlyThat) {

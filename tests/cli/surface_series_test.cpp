@@ -6,12 +6,12 @@
 #include "tests/cli/command_line.h"
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <sys/resource.h>
 
 namespace smelt {
 namespace {
@@ -35,7 +35,8 @@ class SurfaceSeries : public CommandLine {
     const std::string path = output(fmt::format("cloud.{:04}.csv", frame).c_str());
     std::ofstream file(path);
     file << "x,y,z,vx,vy,vz,temperature,colour\n";
-    for (const Vec3& x : positions) file << fmt::format("{},{},{},1,0,-2,{},7\n", x[0], x[1], x[2], 350.0 + 100.0 * x[1]);
+    for (const Vec3& x : positions)
+      file << fmt::format("{},{},{},1,0,-2,{},7\n", x[0], x[1], x[2], 350.0 + 100.0 * x[1]);
     file << last_line;
     return path;
   }
@@ -48,7 +49,8 @@ class SurfaceSeries : public CommandLine {
   void expect_refused(const std::vector<std::string>& arguments, const std::vector<std::string>& said) {
     const Result result = run(arguments);
     EXPECT_EQ(result.status, 3) << result.out << result.err;
-    for (const std::string& text : said) EXPECT_NE(result.err.find(text), std::string::npos) << text << "\nis not in\n" << result.err;
+    for (const std::string& text : said)
+      EXPECT_NE(result.err.find(text), std::string::npos) << text << "\nis not in\n" << result.err;
     EXPECT_FALSE(fs::exists(output("out") + "/surface/surface.0001.obj"));
   }
   void write_cache(const char* name, const std::vector<Vec3>& positions) {
@@ -67,14 +69,15 @@ class SurfaceSeries : public CommandLine {
 
 TEST_F(SurfaceSeries, CloudsOfAnotherSolverBecomeSurfaces) {
   for (int frame = 3; frame <= 6; ++frame) write_csv(frame, ball(6.0));
-  const Result result = run({"surface", pattern(), "-o", output("out"), "--frames", "4-6", "--set", "surface.ply=true", "--set",
-                             "surface.vertex_colours=true", "--set", "surface.fog_volume=true"});
+  const Result result = run({"surface", pattern(), "-o", output("out"), "--frames", "4-6", "--set", "surface.ply=true",
+                             "--set", "surface.vertex_colours=true", "--set", "surface.fog_volume=true"});
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_NE(result.err.find("estimated from " + output("cloud.0003.csv")), std::string::npos) << result.err;
   EXPECT_NE(result.out.find("3 made, 0 kept"), std::string::npos) << result.out;
   EXPECT_FALSE(fs::exists(output("out") + "/surface/surface.0003.obj"));
   const double volume = static_cast<double>(ball(6.0).size()) * spacing * spacing * spacing;
-  const TriangleMesh obj = import_mesh(output("out") + "/surface/surface.0005.obj"), ply = import_mesh(output("out") + "/surface/surface.0005.ply");
+  const TriangleMesh obj = import_mesh(output("out") + "/surface/surface.0005.obj"),
+                     ply = import_mesh(output("out") + "/surface/surface.0005.ply");
   EXPECT_NEAR(compute_volume(obj) / volume, 1.0, 0.05);
   EXPECT_EQ(obj.triangles.size(), ply.triangles.size());
 
@@ -82,21 +85,28 @@ TEST_F(SurfaceSeries, CloudsOfAnotherSolverBecomeSurfaces) {
   for (const char* line : {"components 1", "closed     yes", "manifold   yes", "oriented   yes", "volume     0."})
     EXPECT_NE(info.out.find(line), std::string::npos) << info.out;
   const Result grids = run({"info", output("out") + "/surface/surface.0005.vdb"});
-  for (const char* line : {"grid       surface\ntype       float, level set", "grid       v\ntype       vec3s", "grid       temperature", "grid       density\ntype       float, fog volume",
-                           "creator    smelt", "frame      5", "half width"})
+  for (const char* line :
+       {"grid       surface\ntype       float, level set", "grid       v\ntype       vec3s", "grid       temperature",
+        "grid       density\ntype       float, fog volume", "creator    smelt", "frame      5", "half width"})
     EXPECT_NE(grids.out.find(line), std::string::npos) << line << grids.out;
   const Result cloud = run({"info", output("cloud.0003.csv")});
   EXPECT_NE(cloud.out.find(fmt::format("particles  {}", ball(6.0).size())), std::string::npos) << cloud.out;
   EXPECT_NE(cloud.out.find("unused     colour"), std::string::npos) << cloud.out;
 
   // Done frames are kept with --resume, unless settings changed.
-  EXPECT_NE(run({"surface", pattern(), "-o", output("out"), "--frames", "3-6", "--resume", "--set", "surface.ply=true", "--set",
-                 "surface.vertex_colours=true", "--set", "surface.fog_volume=true"}).out.find("1 made, 3 kept"), std::string::npos);
+  EXPECT_NE(run({"surface", pattern(), "-o", output("out"), "--frames", "3-6", "--resume", "--set", "surface.ply=true",
+                 "--set", "surface.vertex_colours=true", "--set", "surface.fog_volume=true"})
+                .out.find("1 made, 3 kept"),
+            std::string::npos);
   EXPECT_NE(run({"surface", pattern(), "-o", output("out"), "--resume"}).out.find("4 made, 0 kept"), std::string::npos);
 }
 
 TEST_F(SurfaceSeries, OtherFormatsAndOwnCaches) {
-  std::string xyz, ply = fmt::format("ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nend_header\n", ball(5.0).size());
+  std::string xyz,
+      ply = fmt::format(
+          "ply\nformat ascii 1.0\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\n"
+          "end_header\n",
+          ball(5.0).size());
   for (const Vec3& x : ball(5.0)) {
     xyz += fmt::format("{} {} {}\n", x[0], x[1], x[2]);
     ply += fmt::format("{} {} {}\n", x[0], x[1], x[2]);
@@ -116,11 +126,15 @@ TEST_F(SurfaceSeries, AMissingFrameIsSaidLoudly) {
   expect_refused({"surface", pattern(), "-o", output("out"), "--frames", "4-5"}, {"cloud.0005.csv", "missing"});
   expect_refused({"surface", output("none.####.csv"), "-o", output("out")}, {"none.####.csv"});
   expect_refused({"surface", output("none.csv"), "-o", output("out")}, {"none.csv"});
-  expect_refused({"surface", output("cloud.0001.csv"), output("cloud.0002.csv"), "-o", output("out"), "--frames", "2-4"}, {"frame 3 is missing"});
+  expect_refused(
+      {"surface", output("cloud.0001.csv"), output("cloud.0002.csv"), "-o", output("out"), "--frames", "2-4"},
+      {"frame 3 is missing"});
 }
 
 TEST_F(SurfaceSeries, BadParticlesAreNamedWithTheirFile) {
-  const auto surface = [&](const std::string& name) { return std::vector<std::string>{"surface", name, "-o", output("out")}; };
+  const auto surface = [&](const std::string& name) {
+    return std::vector<std::string>{"surface", name, "-o", output("out")};
+  };
   const std::string n = fmt::format("particle {}", ball(3.0).size());
   expect_refused(surface(write_csv(1, ball(3.0), "0,nan,0,0,0,0,300,7\n")), {"cloud.0001.csv", n, "finite"});
   expect_refused(surface(write_csv(1, ball(3.0), "0,0,-inf,0,0,0,300,7\n")), {"cloud.0001.csv", n, "finite"});
@@ -132,7 +146,10 @@ TEST_F(SurfaceSeries, BadParticlesAreNamedWithTheirFile) {
   auto with_spacing = surface(write_csv(1, std::vector<Vec3>(50, Vec3(1, 2, 3))));
   with_spacing.insert(with_spacing.end(), {"--spacing_m", "0.05"});
   expect_refused(with_spacing, {"cloud.0001.csv", "all 50 particles are at one place"});
-  expect_refused(surface(write("a.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 9\nproperty float x\nend_header\n1234")), {"a.ply", "truncated"});
+  expect_refused(
+      surface(
+          write("a.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 9\nproperty float x\nend_header\n1234")),
+      {"a.ply", "truncated"});
   expect_refused(surface(write("a.csv", "a,b\n1,2\n")), {"a.csv", "x, y, z", "a, b"});
   expect_refused(surface(write("a.abc", "1")), {"a.abc", ".csv"});
 }
@@ -143,7 +160,8 @@ TEST_F(SurfaceSeries, BadCachesAreNamed) {
   std::string bytes = read_file(cache);
   bytes[bytes.size() / 2] = static_cast<char>(bytes[bytes.size() / 2] ^ 0x55);
   expect_refused({"surface", write("damaged.vdb", bytes), "-o", output("out")}, {"damaged.vdb", "damaged"});
-  expect_refused({"surface", write("short.vdb", bytes.substr(0, bytes.size() / 3)), "-o", output("out")}, {"short.vdb", "damaged"});
+  expect_refused({"surface", write("short.vdb", bytes.substr(0, bytes.size() / 3)), "-o", output("out")},
+                 {"short.vdb", "damaged"});
   write_cache("empty.vdb", {});
   expect_refused({"surface", output("empty.vdb"), "-o", output("out")}, {"empty.vdb", "no particles"});
   write_cache("place.vdb", std::vector<Vec3>(20, Vec3(1, 2, 3)));
@@ -152,7 +170,8 @@ TEST_F(SurfaceSeries, BadCachesAreNamed) {
   // One particle of a cache, which says how large it is, is a drop.
   write_cache("one.vdb", {Vec3(1, 2, 3)});
   ASSERT_EQ(run({"surface", output("one.vdb"), "-o", output("drop")}).status, 0);
-  EXPECT_NEAR(compute_volume(read_obj(output("drop") + "/surface/surface.0001.obj").mesh), spacing * spacing * spacing, 0.3 * spacing * spacing * spacing);
+  EXPECT_NEAR(compute_volume(read_obj(output("drop") + "/surface/surface.0001.obj").mesh), spacing * spacing * spacing,
+              0.3 * spacing * spacing * spacing);
 }
 
 TEST_F(SurfaceSeries, WhatCannotBeIsSaidBeforeItStarts) {
@@ -162,16 +181,21 @@ TEST_F(SurfaceSeries, WhatCannotBeIsSaidBeforeItStarts) {
   std::vector<Vec3> far;
   for (int i = 0; i < 4000; ++i) far.push_back(Vec3(1.7 * (i % 20), 1.7 * (i / 20 % 20), 1.7 * (i / 400)));
   write_cache("far.vdb", far);
-  const Result large = run({"surface", output("far.vdb"), "-o", output("out"), "--set", "surface.cell_over_spacing=0.1", "--set", "surface.kernel_over_spacing=3"}, [] {
-    const rlimit limit{4000000000, 4000000000};
-    setrlimit(RLIMIT_AS, &limit);
-  });
+  const Result large = run({"surface", output("far.vdb"), "-o", output("out"), "--set", "surface.cell_over_spacing=0.1",
+                            "--set", "surface.kernel_over_spacing=3"},
+                           [] {
+                             const rlimit limit{4000000000, 4000000000};
+                             setrlimit(RLIMIT_AS, &limit);
+                           });
   EXPECT_EQ(large.status, 3) << large.err;
   EXPECT_NE(large.err.find("far.vdb"), std::string::npos) << large.err;
   EXPECT_NE(large.err.find("allowed are 4 GB"), std::string::npos) << large.err;
-  expect_refused({"surface", cache, "-o", output("out"), "--attributes", "v,salinity"}, {"particles.0001.vdb", "salinity", "v"});
-  expect_refused({"surface", cache, "-o", output("out"), "--attributes", "temperature"}, {"particles.0001.vdb", "temperature"});
-  expect_refused({"surface", cache, "-o", output("out"), "--set", "surface.vertex_colours=true"}, {"particles.0001.vdb", "temperature"});
+  expect_refused({"surface", cache, "-o", output("out"), "--attributes", "v,salinity"},
+                 {"particles.0001.vdb", "salinity", "v"});
+  expect_refused({"surface", cache, "-o", output("out"), "--attributes", "temperature"},
+                 {"particles.0001.vdb", "temperature"});
+  expect_refused({"surface", cache, "-o", output("out"), "--set", "surface.vertex_colours=true"},
+                 {"particles.0001.vdb", "temperature"});
   expect_refused({"surface", cache, "-o", output("out"), "--set", "surface.iso_valeu=0.4"}, {"iso_value"});
 }
 

@@ -5,9 +5,9 @@
 #include "io/checkpoint.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
+#include <unistd.h>
 
 namespace smelt {
 namespace {
@@ -24,7 +24,11 @@ class BodyPoses : public testing::Test {
 };
 
 TEST_F(BodyPoses, ReadBackAsTheSameBits) {
-  BodyPose body{3, {rotation_of<3>(to_skew(Vec3(0.1, 2.0, -0.7))), Vec3(1.0 / 3.0, -1e-17, 5e8)}, Vec3(0.1, 0.2, 0.3), Vec3(1, 2, 3), Vec3(-4, 5, 6e-9)};
+  BodyPose body{3,
+                {rotation_of<3>(to_skew(Vec3(0.1, 2.0, -0.7))), Vec3(1.0 / 3.0, -1e-17, 5e8)},
+                Vec3(0.1, 0.2, 0.3),
+                Vec3(1, 2, 3),
+                Vec3(-4, 5, 6e-9)};
   write_body_poses(folder_ / "bodies.json", 7, 0.25, {body, BodyPose{}});
   const auto read = read_body_poses(folder_ / "bodies.json");
   ASSERT_EQ(read.size(), 2u);
@@ -37,7 +41,8 @@ TEST_F(BodyPoses, ReadBackAsTheSameBits) {
 }
 
 TEST_F(BodyPoses, DamageIsNamed) {
-  for (const char* text : {"", "{}", "{\"bodies\": [{\"collider\": 0}]}", "{\"bodies\": [{\"collider\": 0, \"rotation\": [[1, 0]]}]}"}) {
+  for (const char* text :
+       {"", "{}", "{\"bodies\": [{\"collider\": 0}]}", "{\"bodies\": [{\"collider\": 0, \"rotation\": [[1, 0]]}]}"}) {
     write_file_atomically(folder_ / "bad.json", text);
     try {
       read_body_poses(folder_ / "bad.json");
@@ -52,7 +57,8 @@ TEST_F(BodyPoses, DamageIsNamed) {
 TEST_F(BodyPoses, ACheckpointKeepsTheirStates) {
   Checkpoint checkpoint;
   checkpoint.frame = 3;
-  BodyState<3> state{Vec3(0.1, 0.2, 0.3), rotation_of<3>(to_skew(Vec3(1, 2, 3))), Vec3(4, 5, 6), to_skew(Vec3(7, 8, 1.0 / 9.0))};
+  BodyState<3> state{Vec3(0.1, 0.2, 0.3), rotation_of<3>(to_skew(Vec3(1, 2, 3))), Vec3(4, 5, 6),
+                     to_skew(Vec3(7, 8, 1.0 / 9.0))};
   checkpoint.bodies = {state, BodyState<3>{}};
   write_checkpoint(folder_ / "checkpoint.bin", checkpoint);
   const Checkpoint read = read_checkpoint(folder_ / "checkpoint.bin");

@@ -6,9 +6,9 @@
 #include "io/radiance_hdr.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
+#include <unistd.h>
 
 namespace smelt {
 namespace {
@@ -19,7 +19,8 @@ std::filesystem::path temporary(const std::string& name) {
 
 LayeredImage some_layers() {
   LayeredImage image{3, 2, {}};
-  for (const char* name : {"R", "G", "B", "A", "depth.Z"}) image.channels.push_back({name, {0.0f, 0.5f, 1.0f, 2.0f, 1e4f, 123456.7f}});
+  for (const char* name : {"R", "G", "B", "A", "depth.Z"})
+    image.channels.push_back({name, {0.0f, 0.5f, 1.0f, 2.0f, 1e4f, 123456.7f}});
   return image;
 }
 
@@ -93,7 +94,8 @@ TEST(RadianceHdr, ReadsFlatPixels) {
 TEST(RadianceHdr, ReadsRunsOfComponents) {
   // Eight pixels: red a run of 8, green a run of 4 and four different, blue and exponent runs.
   std::string row("\x02\x02\x00\x08", 4);
-  row += std::string("\x88\x10", 2) + std::string("\x84\x20\x04\x01\x02\x03\x04", 7) + std::string("\x88\x30", 2) + std::string("\x88\x80", 2);
+  row += std::string("\x88\x10", 2) + std::string("\x84\x20\x04\x01\x02\x03\x04", 7) + std::string("\x88\x30", 2) +
+         std::string("\x88\x80", 2);
   write_file_atomically(temporary("runs.hdr"), hdr_heading(8, 1) + row);
   const RadianceImage image = read_radiance(temporary("runs.hdr"));
   EXPECT_FLOAT_EQ(image.pixels[7].x(), 16.5f / 256.0f);

@@ -43,8 +43,8 @@ class HeightFieldFile : public testing::Test {
     png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr, nullptr);
     png_infop info = png_create_info_struct(png);
     png_init_io(png, file);
-    png_set_IHDR(png, info, static_cast<png_uint_32>(columns), static_cast<png_uint_32>(rows), depth, colour, PNG_INTERLACE_NONE,
-                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(columns), static_cast<png_uint_32>(rows), depth, colour,
+                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
     png_set_gAMA(png, info, 0.45455);  // to be left aside: heights are no light
     png_write_info(png, info);
     for (int r = 0; r < rows; ++r) {
@@ -64,7 +64,8 @@ class HeightFieldFile : public testing::Test {
   std::filesystem::path folder_;
 };
 
-const std::string grid = "NCOLS 3\nnrows 2\nxllcorner 500000\nyllcorner 4e6\ncellsize 2.5\nNODATA_value -9999\n1 2 3\n4 5.5 -6e0\n";
+const std::string grid =
+    "NCOLS 3\nnrows 2\nxllcorner 500000\nyllcorner 4e6\ncellsize 2.5\nNODATA_value -9999\n1 2 3\n4 5.5 -6e0\n";
 
 TEST_F(HeightFieldFile, EsriGrid) {
   const HeightField f = read_height_field(write("a.asc", grid), {});
@@ -78,7 +79,8 @@ TEST_F(HeightFieldFile, EsriGrid) {
 }
 
 TEST_F(HeightFieldFile, CsvWithAnySeparator) {
-  const HeightField f = read_height_field(write("a.csv", "# heights\n1,2,3\r\n4; 5; 6\n\n7\t8 9"), {10.0, 2.0, 0.0, 1.0});
+  const HeightField f =
+      read_height_field(write("a.csv", "# heights\n1,2,3\r\n4; 5; 6\n\n7\t8 9"), {10.0, 2.0, 0.0, 1.0});
   EXPECT_EQ(f.n_columns, 3u);
   EXPECT_EQ(f.n_rows, 3u);
   EXPECT_EQ(f.height, (std::vector<double>{2, 4, 6, 8, 10, 12, 14, 16, 18}));
@@ -89,7 +91,8 @@ TEST_F(HeightFieldFile, PngOf16And8Bits) {
   ASSERT_EQ(f.n_columns, 5u);
   ASSERT_EQ(f.n_rows, 3u);
   for (std::size_t r = 0; r < 3; ++r)
-    for (std::size_t c = 0; c < 5; ++c) ASSERT_DOUBLE_EQ(f.at(c, r), 100.0 + 256.0 * static_cast<double>(r) + static_cast<double>(c));
+    for (std::size_t c = 0; c < 5; ++c)
+      ASSERT_DOUBLE_EQ(f.at(c, r), 100.0 + 256.0 * static_cast<double>(r) + static_cast<double>(c));
   const HeightField eight = read_height_field(write("b.png", make_png(5, 3, 8)), {1.0, 1.0, 0.0, 255.0});
   EXPECT_DOUBLE_EQ(eight.at(4, 2), 4.0);
 }
@@ -103,25 +106,30 @@ TEST_F(HeightFieldFile, SaysWhereAndWhatIsWrong) {
   EXPECT_EQ(error_of("a.asc", head + "1 2 3\n4 5\n"), "a.asc:6: row 2 has only 2 heights; ncols says 3");
   EXPECT_EQ(error_of("a.asc", head + "1 2 3 4\n4 5 6\n"), "a.asc:5: row 1 has more than 3 heights; ncols says 3");
   EXPECT_EQ(error_of("a.asc", head + "1 2 3\n"), "a.asc:5: the file ends after 1 rows of heights; nrows says 2");
-  EXPECT_EQ(error_of("a.asc", head + "1 2 3\n4 5 6\n7 8 9\n"), "a.asc:6: there is more after the last of the 2 rows that nrows gives");
+  EXPECT_EQ(error_of("a.asc", head + "1 2 3\n4 5 6\n7 8 9\n"),
+            "a.asc:6: there is more after the last of the 2 rows that nrows gives");
   EXPECT_EQ(error_of("a.asc", head + "1 2 x3\n4 5 6\n"), "a.asc:5: row 1, column 3: expected a number, found \"x3\"");
   EXPECT_EQ(error_of("a.asc", "nrows 2\n1 2\n"), "a.asc: the header lacks ncols; is it an ESRI ASCII grid?");
-  EXPECT_EQ(error_of("a.asc", "ncols 3\nnrows 2\n1 2 3\n4 5 6\n"), "a.asc: the header lacks cellsize; give [collider.terrain] cell_m");
+  EXPECT_EQ(error_of("a.asc", "ncols 3\nnrows 2\n1 2 3\n4 5 6\n"),
+            "a.asc: the header lacks cellsize; give [collider.terrain] cell_m");
   EXPECT_NE(error_of("a.asc", "ncols 3\nrows 2\n").find("\"rows\" is no key"), std::string::npos);
-  EXPECT_EQ(error_of("a.asc", "ncols 1e9\nnrows 2\ncellsize 1\n1\n"), "a.asc: ncols must be a whole number from 1 to 100000, is 1000000000");
+  EXPECT_EQ(error_of("a.asc", "ncols 1e9\nnrows 2\ncellsize 1\n1\n"),
+            "a.asc: ncols must be a whole number from 1 to 100000, is 1000000000");
   EXPECT_NE(error_of("a.asc", "").find("lacks ncols"), std::string::npos);
   EXPECT_EQ(error_of("a.csv", "1,2\n3\n", {1.0, 1.0, 0.0, 1.0}), "a.csv:2: row 2 has 1 heights, the first row 2");
   EXPECT_EQ(error_of("a.csv", "1,2\n3,inf\n", {1.0, 1.0, 0.0, 1.0}),
             "a.csv:2: row 2, column 2: the height is inf; a terrain's must be finite, fill the gap in the data");
   EXPECT_NE(error_of("a.csv", "1,2\n3,4\n").find("give [collider.terrain] cell_m"), std::string::npos);
-  EXPECT_EQ(error_of("a.csv", "1,2\n", {1.0, 1.0, 0.0, 1.0}), "a.csv: a terrain needs at least 2 x 2 heights, this file has 2 x 1");
+  EXPECT_EQ(error_of("a.csv", "1,2\n", {1.0, 1.0, 0.0, 1.0}),
+            "a.csv: a terrain needs at least 2 x 2 heights, this file has 2 x 1");
 }
 
 TEST_F(HeightFieldFile, RefusesDamagedAndColouredPictures) {
   const std::string png = make_png(40, 30);
   const HeightScale scale{1.0, 1.0, 0.0, 1.0};
   for (const std::size_t n : {std::size_t{0}, std::size_t{5}, std::size_t{40}, png.size() / 2, png.size() - 13})
-    EXPECT_NE(error_of("a.png", png.substr(0, n), scale).find("cannot be read as a PNG"), std::string::npos) << n << " bytes";
+    EXPECT_NE(error_of("a.png", png.substr(0, n), scale).find("cannot be read as a PNG"), std::string::npos)
+        << n << " bytes";
   EXPECT_NE(error_of("a.png", make_png(4, 4, 8, PNG_COLOR_TYPE_RGB), scale).find("grey"), std::string::npos);
 }
 

@@ -3,9 +3,9 @@
 #include "core/error.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
+#include <unistd.h>
 
 namespace smelt {
 namespace {
@@ -26,7 +26,9 @@ std::string message_of(const std::string& name, const std::string& bytes) {
 }
 
 TEST(ParticleCloud, CsvColumnsByName) {
-  const ParticleCloud c = read_particle_cloud(write("a.csv", "# made by hand\n\"Temperature\";z;y;x;id;vx;vy;vz\r\n310;3;2;1;0;.1;.2;.3\r\n\n320;-3e-1;+2;1;1;4;5;6\r\n"));
+  const ParticleCloud c = read_particle_cloud(write(
+      "a.csv",
+      "# made by hand\n\"Temperature\";z;y;x;id;vx;vy;vz\r\n310;3;2;1;0;.1;.2;.3\r\n\n320;-3e-1;+2;1;1;4;5;6\r\n"));
   EXPECT_EQ(c.position, (std::vector<Vec3>{Vec3(1, 2, 3), Vec3(1, 2, -0.3)}));
   EXPECT_EQ(c.velocity, (std::vector<Vec3f>{Vec3f(0.1f, 0.2f, 0.3f), Vec3f(4, 5, 6)}));
   EXPECT_EQ(c.temperature, (std::vector<float>{310, 320}));
@@ -35,22 +37,27 @@ TEST(ParticleCloud, CsvColumnsByName) {
 }
 
 TEST(ParticleCloud, CsvAsParaViewWritesIt) {
-  const ParticleCloud c = read_particle_cloud(write("paraview.csv", "velocity:0,velocity:1,velocity:2,Points:0,Points:1,Points:2\n1,2,3,4,5,6\n"));
+  const ParticleCloud c = read_particle_cloud(
+      write("paraview.csv", "velocity:0,velocity:1,velocity:2,Points:0,Points:1,Points:2\n1,2,3,4,5,6\n"));
   EXPECT_EQ(c.position, (std::vector<Vec3>{Vec3(4, 5, 6)}));
   EXPECT_EQ(c.velocity, (std::vector<Vec3f>{Vec3f(1, 2, 3)}));
 }
 
 TEST(ParticleCloud, XyzIsThreeNumbersALine) {
-  EXPECT_EQ(read_particle_cloud(write("a.xyz", "1 2 3\n\t4  5 6\n# end\n")).position, (std::vector<Vec3>{Vec3(1, 2, 3), Vec3(4, 5, 6)}));
+  EXPECT_EQ(read_particle_cloud(write("a.xyz", "1 2 3\n\t4  5 6\n# end\n")).position,
+            (std::vector<Vec3>{Vec3(1, 2, 3), Vec3(4, 5, 6)}));
   EXPECT_NE(message_of("four.xyz", "1 2 3\n1 2 3 4\n").find("four.xyz:2: particle 1 has 4 numbers"), std::string::npos);
 }
 
 TEST(ParticleCloud, PlyInBothByteOrders) {
   const auto header = [](const char* order) {
-    return std::string("ply\nformat ") + order + " 1.0\nelement vertex 1\nproperty double x\nproperty float y\nproperty short z\nproperty float density\nend_header\n";
+    return std::string("ply\nformat ") + order +
+           " 1.0\nelement vertex 1\nproperty double x\nproperty float y\nproperty short z\nproperty float density\n"
+           "end_header\n";
   };
   // 1.0, 2.0f, 3, 1000.0f
-  const std::string big("\x3f\xf0\0\0\0\0\0\0\x40\0\0\0\0\x03\x44\x7a\0\0", 18), little("\0\0\0\0\0\0\xf0\x3f\0\0\0\x40\x03\0\0\0\x7a\x44", 18);
+  const std::string big("\x3f\xf0\0\0\0\0\0\0\x40\0\0\0\0\x03\x44\x7a\0\0", 18),
+      little("\0\0\0\0\0\0\xf0\x3f\0\0\0\x40\x03\0\0\0\x7a\x44", 18);
   for (const ParticleCloud& c : {read_particle_cloud(write("big.ply", header("binary_big_endian") + big)),
                                  read_particle_cloud(write("little.ply", header("binary_little_endian") + little)),
                                  read_particle_cloud(write("ascii.ply", header("ascii") + "1 2 3 1000\n"))}) {

@@ -9,9 +9,9 @@
 #include <assimp/Importer.hpp>
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <limits>
+#include <unistd.h>
 
 namespace smelt {
 namespace {
@@ -37,7 +37,8 @@ TEST(Ply, HoldsEveryAttribute) {
   write_ply(temporary("all.ply"), s);
   const ParticleCloud back = read_particle_cloud(temporary("all.ply"));
   ASSERT_EQ(back.position.size(), s.mesh.vertices.size());
-  for (std::size_t v = 0; v < back.position.size(); ++v) ASSERT_EQ(back.position[v], s.mesh.vertices[v].cast<float>().cast<double>());
+  for (std::size_t v = 0; v < back.position.size(); ++v)
+    ASSERT_EQ(back.position[v], s.mesh.vertices[v].cast<float>().cast<double>());
   EXPECT_EQ(back.velocity, s.velocity);
   EXPECT_EQ(back.temperature, s.temperature);
   EXPECT_EQ(back.viscosity, s.viscosity);

@@ -58,7 +58,10 @@ TEST(SurfaceVdb, WritesAFogVolumeOnRequest) {
   EXPECT_EQ(fog->getGridClass(), openvdb::GRID_FOG_VOLUME);
   EXPECT_EQ(fog->getCreator(), "smelt");
   EXPECT_EQ(fog->metaValue<std::int32_t>("frame"), 12);
-  const auto at = [&](double r) { return fog->tree().getValue(openvdb::Coord::round(fog->worldToIndex(openvdb::Vec3d(centre[0] + r, centre[1], centre[2])))); };
+  const auto at = [&](double r) {
+    return fog->tree().getValue(
+        openvdb::Coord::round(fog->worldToIndex(openvdb::Vec3d(centre[0] + r, centre[1], centre[2]))));
+  };
   EXPECT_EQ(at(0.0), 1.0f);
   EXPECT_EQ(at(radius + 0.05), 0.0f);
   EXPECT_NEAR(at(radius - 0.03), 0.5f, 0.2f);

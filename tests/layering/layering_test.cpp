@@ -1,4 +1,5 @@
-// Includes point one way: core <- {io, surfacing, render} <- scenes <- bench <- cli; the middle three never include each other.
+// Includes point one way: core <- {io, surfacing, render} <- scenes <- bench <- cli; the middle three never include
+// each other.
 
 #include "tests/source_folder.h"
 
@@ -44,7 +45,8 @@ TEST(Layering, IncludesPointOneWay) {
         const std::string target = included_folder(line);
         if (!allowed_includes.contains(target)) continue;
         ++n_checked;
-        EXPECT_TRUE(allowed.contains(target)) << entry.path() << ":" << number << ": " << folder << " must not include " << target;
+        EXPECT_TRUE(allowed.contains(target))
+            << entry.path() << ":" << number << ": " << folder << " must not include " << target;
       }
     }
   }
@@ -58,7 +60,8 @@ TEST(Layering, CoreOpensNoFileAndPrintsNothing) {
     if (!entry.is_regular_file()) continue;
     std::ifstream file(entry.path());
     for (std::string line; std::getline(file, line);)
-      for (const auto& header : banned) EXPECT_FALSE(line.starts_with("#include " + header)) << entry.path() << " includes " << header;
+      for (const auto& header : banned)
+        EXPECT_FALSE(line.starts_with("#include " + header)) << entry.path() << " includes " << header;
   }
 }
 

@@ -46,12 +46,14 @@ TEST(CieMatching, MeetsTheStandardsTable) {
     double nm;
     Vec3 xyz;
   };
-  for (const Row& row : {Row{450, {0.3362, 0.0380, 1.7721}}, Row{500, {0.0049, 0.3230, 0.2720}}, Row{555, {0.5121, 1.0000, 0.0057}},
-                         Row{600, {1.0622, 0.6310, 0.0008}}, Row{650, {0.2835, 0.1070, 0.0000}}})
+  for (const Row& row :
+       {Row{450, {0.3362, 0.0380, 1.7721}}, Row{500, {0.0049, 0.3230, 0.2720}}, Row{555, {0.5121, 1.0000, 0.0057}},
+        Row{600, {1.0622, 0.6310, 0.0008}}, Row{650, {0.2835, 0.1070, 0.0000}}})
     EXPECT_LT((cie_matching(row.nm * 1e-9) - row.xyz).cwiseAbs().maxCoeff(), 0.035) << row.nm;
 }
 
-/// Until 1979 the candela was 1/60 of what a square centimetre of black body gives off at the freezing point of platinum, 2041.4 K.
+/// Until 1979 the candela was 1/60 of what a square centimetre of black body gives off at the freezing point of
+/// platinum, 2041.4 K.
 TEST(BlackBody, LuminanceAtThePointOfPlatinum) {
   EXPECT_NEAR(black_body_xyz(2041.4)[1], 6.0e5, 6.0e5 * 0.015);
 }
@@ -61,8 +63,8 @@ TEST(BlackBody, ChromaticitiesOfThePlanckianLocus) {
   struct Row {
     double kelvin, x, y;
   };
-  for (const Row& row : {Row{1000, 0.6528, 0.3444}, Row{1500, 0.5857, 0.3931}, Row{2000, 0.5267, 0.4133}, Row{2856, 0.4476, 0.4074},
-                         Row{6500, 0.3135, 0.3237}}) {
+  for (const Row& row : {Row{1000, 0.6528, 0.3444}, Row{1500, 0.5857, 0.3931}, Row{2000, 0.5267, 0.4133},
+                         Row{2856, 0.4476, 0.4074}, Row{6500, 0.3135, 0.3237}}) {
     const Vec3 xyz = black_body_xyz(row.kelvin);
     EXPECT_NEAR(xyz[0] / xyz.sum(), row.x, 0.0015) << row.kelvin;
     EXPECT_NEAR(xyz[1] / xyz.sum(), row.y, 0.0015) << row.kelvin;

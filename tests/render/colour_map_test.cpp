@@ -38,7 +38,9 @@ TEST(ColourMap, EqualStepsLookEqual) {
 TEST(ColourMap, LightnessRises) {
   const ColourMap map;
   for (int k = 1; k < 256; ++k)
-    EXPECT_GT(cie_lightness(map(static_cast<float>(k) / 255.0f)), cie_lightness(map(static_cast<float>(k - 1) / 255.0f))) << k;
+    EXPECT_GT(cie_lightness(map(static_cast<float>(k) / 255.0f)),
+              cie_lightness(map(static_cast<float>(k - 1) / 255.0f)))
+        << k;
   EXPECT_GT(cie_lightness(map(1.0f)) - cie_lightness(map(0.0f)), 60.0);
 }
 
@@ -51,7 +53,8 @@ TEST(ColourBar, TicksAreRoundAndInside) {
     EXPECT_NEAR(tick / 5.0, std::round(tick / 5.0), 1e-9);
   }
   EXPECT_GE(odd.size(), 3U);
-  for (const double tick : compute_ticks({"", 30.0, 4e8, true}, 5)) EXPECT_NEAR(std::log10(tick), std::round(std::log10(tick)), 1e-9);
+  for (const double tick : compute_ticks({"", 30.0, 4e8, true}, 5))
+    EXPECT_NEAR(std::log10(tick), std::round(std::log10(tick)), 1e-9);
   EXPECT_NEAR(ColourScale({"", 1.0, 1e4, true}).place(100.0), 0.5, 1e-12);
 }
 

@@ -9,7 +9,8 @@ namespace smelt {
 namespace {
 
 ImageRgb8 plain(int width, int height, std::uint8_t grey) {
-  return {width, height, std::vector<std::array<std::uint8_t, 3>>(static_cast<std::size_t>(width * height), {grey, grey, grey})};
+  return {width, height,
+          std::vector<std::array<std::uint8_t, 3>>(static_cast<std::size_t>(width * height), {grey, grey, grey})};
 }
 
 TEST(ContactSheet, PicturesStandInRowsAndKeepTheirLight) {

@@ -11,7 +11,9 @@ namespace smelt {
 namespace {
 
 Vec3f scattered(int i) {
-  const auto part = [i](std::uint32_t k) { return 40.0f * (unit_float(hash_combine(static_cast<std::uint32_t>(i), k)) - 0.5f); };
+  const auto part = [i](std::uint32_t k) {
+    return 40.0f * (unit_float(hash_combine(static_cast<std::uint32_t>(i), k)) - 0.5f);
+  };
   return {part(1), part(2), part(3)};
 }
 

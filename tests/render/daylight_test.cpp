@@ -15,7 +15,8 @@ Daylight at_elevation(double degrees) {
 
 Vec3f towards(const RadianceImage& sky, double elevation_deg) {
   const int row = static_cast<int>((0.5 - elevation_deg / 180.0) * sky.height);
-  return sky.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(sky.width)];  // away from the sun, towards -x .. +z
+  return sky.pixels[static_cast<std::size_t>(row) *
+                    static_cast<std::size_t>(sky.width)];  // away from the sun, towards -x .. +z
 }
 
 TEST(Daylight, ZenithIsBlueAndTheSunReddensAsItSinks) {

@@ -13,7 +13,9 @@ struct Setting {
   std::vector<Vec3> position{Vec3(-0.6, 0.0, 0.0), Vec3(0.6, 0.0, 0.0)};
   std::vector<float> value{0.0f, 10.0f};
 
-  DiagnosticPicture picture() const { return {position, value, 0.5, {"speed [m/s]", 0.0, 10.0, false}, "test", nullptr, SurfaceOverlay::none}; }
+  DiagnosticPicture picture() const {
+    return {position, value, 0.5, {"speed [m/s]", 0.0, 10.0, false}, "test", nullptr, SurfaceOverlay::none};
+  }
 };
 
 std::array<std::uint8_t, 3> pixel(const ImageRgb8& image, int x, int y) {
@@ -25,8 +27,8 @@ TEST(Diagnostic, ParticlesHaveTheColoursOfTheirValues) {
   const ImageRgb8 image = draw_diagnostic(s.picture(), s.scene);
   // White room: 30 degrees over 90 pixels from 5 m away; spheres of half a metre at +-0.6 m.
   const auto low = pixel(image, 60 - 20, 45), high = pixel(image, 60 + 20, 45);
-  EXPECT_GT(low[2], low[1]);       // violet
-  EXPECT_GT(high[0], 150);         // yellow
+  EXPECT_GT(low[2], low[1]);  // violet
+  EXPECT_GT(high[0], 150);    // yellow
   EXPECT_GT(high[1], high[2] + 50);
   EXPECT_GT(pixel(image, 60, 80)[1], 240);  // paper
 }

@@ -46,7 +46,8 @@ Vec3 gathered_irradiance(const LightSet& lights) {
   constexpr int n = 1000;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < n; ++j) {
-      const Vec3f d = sample_cosine_hemisphere({(static_cast<float>(i) + 0.5f) / n, (static_cast<float>(j) + 0.5f) / n});
+      const Vec3f d =
+          sample_cosine_hemisphere({(static_cast<float>(i) + 0.5f) / n, (static_cast<float>(j) + 0.5f) / n});
       sum += lights.far_radiance(Frame(Vec3f::UnitY()).to_world(d)).cast<double>() * (std::numbers::pi / (n * n));
     }
   return sum;
@@ -113,7 +114,9 @@ TEST(EnvironmentMap, MiddleOfTheImageIsTowardsMinusZ) {
   image->width = 64;
   image->height = 32;
   image->pixels.assign(64 * 32, Vec3f::Zero());
-  for (int x = 30; x < 34; ++x) image->pixels[static_cast<std::size_t>(16 * 64 + x)] = image->pixels[static_cast<std::size_t>(15 * 64 + x)] = Vec3f::Ones();
+  for (int x = 30; x < 34; ++x)
+    image->pixels[static_cast<std::size_t>(16 * 64 + x)] = image->pixels[static_cast<std::size_t>(15 * 64 + x)] =
+        Vec3f::Ones();
   EXPECT_GT(EnvironmentMap({image, 0.0, 1.0f}).radiance(-Vec3f::UnitZ()).x(), 0.9f);
   // Turned a quarter counter-clockwise, seen from above, -z goes to -x.
   EXPECT_GT(EnvironmentMap({image, 90.0, 1.0f}).radiance(-Vec3f::UnitX()).x(), 0.9f);
@@ -130,7 +133,8 @@ TEST(EnvironmentMap, DensityIntegratesToOne) {
   constexpr int n = 400;
   for (int i = 0; i < n; ++i)
     for (int j = 0; j < 2 * n; ++j) {
-      const double theta = std::numbers::pi * (i + 0.5) / n, phi = std::numbers::pi * (j + 0.5) / n, sine = std::sin(theta);
+      const double theta = std::numbers::pi * (i + 0.5) / n, phi = std::numbers::pi * (j + 0.5) / n,
+                   sine = std::sin(theta);
       const Vec3 d(sine * std::cos(phi), std::cos(theta), sine * std::sin(phi));
       sum += map.pdf(d.cast<float>()) * sine * std::numbers::pi * std::numbers::pi / (n * n);
     }

@@ -94,8 +94,8 @@ TEST(CoatedDiffuse, IsReciprocal) {
   EXPECT_NEAR(forth, CoatedDiffuse(albedo, 0.8f, 0.7f, 0.4f)(albedo, 0.3f), 1e-6f);
 }
 
-/// Directional albedo of a metal: at most what arrives; at least what its first reflection and, once more darkened by its colour, all
-/// further ones come to, so all of it where the metal is white.
+/// Directional albedo of a metal: at most what arrives; at least what its first reflection and, once more darkened by
+/// its colour, all further ones come to, so all of it where the metal is white.
 TEST(Metal, ReflectsNoMoreThanArrives) {
   const CoatAlbedo mirror = CoatAlbedo::perfect_mirror();
   for (const Vec3f& f0 : {Vec3f(1.0f, 1.0f, 1.0f), Vec3f(0.95f, 0.64f, 0.54f)})
@@ -104,10 +104,13 @@ TEST(Metal, ReflectsNoMoreThanArrives) {
         const Vec3f wo = direction(cos_out, 0.0);
         const Vec3f scale = multiple_scattering(mirror, f0, wo.z(), roughness);
         for (int c = 0; c < 3; ++c) {
-          const double albedo = integrate_hemisphere([&](const Vec3f& wi) {
-            const Vec3f half = (wi + wo).normalized();
-            return ggx_mirror(wi, wo, ggx_alpha(roughness)) * wi.z() * scale[c] * fresnel_metal(f0, half.dot(wo))[c];
-          }, 4000, 100);
+          const double albedo = integrate_hemisphere(
+              [&](const Vec3f& wi) {
+                const Vec3f half = (wi + wo).normalized();
+                return ggx_mirror(wi, wo, ggx_alpha(roughness)) * wi.z() * scale[c] *
+                       fresnel_metal(f0, half.dot(wo))[c];
+              },
+              4000, 100);
           EXPECT_LT(albedo, 1.006) << roughness << " " << cos_out;
           const double first = mirror(wo.z(), roughness);
           EXPECT_GT(albedo, 0.98 * f0[c] * (first + f0[c] * (1.0 - first))) << roughness << " " << cos_out;

@@ -49,7 +49,8 @@ TEST(Furnace, MetalSphereAtEveryRoughness) {
     RenderScene scene = white_room(64, 64);
     scene.look.material = MaterialKind::metal;
     scene.look.cold = {Vec3f::Ones(), roughness, 0.0f};
-    EXPECT_NEAR(mean_of_fluid(trace(make_sphere(1.0, Vec3::Zero(), 128), scene, samples(64))).x(), 1.0, 0.005) << roughness;
+    EXPECT_NEAR(mean_of_fluid(trace(make_sphere(1.0, Vec3::Zero(), 128), scene, samples(64))).x(), 1.0, 0.005)
+        << roughness;
   }
 }
 
@@ -80,7 +81,8 @@ TEST(Furnace, WhiteFoldsFillWithBounces) {
   RenderScene scene = white_room(32, 32);
   scene.look.specular = 0.0f;
   SurfaceMesh fold;  // a right angle, open to the camera
-  fold.mesh = {{Vec3(0, -1, -1), Vec3(0, 1, -1), Vec3(1, 1, 0), Vec3(1, -1, 0), Vec3(-1, -1, 0), Vec3(-1, 1, 0)}, {{0, 2, 1}, {0, 3, 2}, {0, 1, 5}, {0, 5, 4}}};
+  fold.mesh = {{Vec3(0, -1, -1), Vec3(0, 1, -1), Vec3(1, 1, 0), Vec3(1, -1, 0), Vec3(-1, -1, 0), Vec3(-1, 1, 0)},
+               {{0, 2, 1}, {0, 3, 2}, {0, 1, 5}, {0, 5, 4}}};
   scene.camera.vertical_fov_deg = 6.0;
   const double one = mean_of_fluid(trace(fold, scene, samples(64, 1))).x();
   const double many = mean_of_fluid(trace(fold, scene, samples(64, 16))).x();
@@ -98,10 +100,12 @@ TEST(Glow, SphereShowsItsBlackBody) {
   SurfaceMesh ball = make_sphere(1.0, Vec3::Zero(), 64);
   ball.temperature.assign(ball.mesh.vertices.size(), 1300.0f);
   const Vec3 expected = (BlackBodyTable()(1300.0f) * (0.8f / 100.0f)).cast<double>();
-  EXPECT_LT((mean_of_fluid(trace(ball, scene, samples(4))) - expected).cwiseAbs().maxCoeff(), 1e-4 * expected.maxCoeff());
+  EXPECT_LT((mean_of_fluid(trace(ball, scene, samples(4))) - expected).cwiseAbs().maxCoeff(),
+            1e-4 * expected.maxCoeff());
 }
 
-/// Irradiance of a floor under a uniformly glowing sphere of radiance L: pi L (R/d)^2 at its foot, by drawn lights and rays together.
+/// Irradiance of a floor under a uniformly glowing sphere of radiance L: pi L (R/d)^2 at its foot, by drawn lights and
+/// rays together.
 TEST(Glow, SphereLightsTheFloorAsTheoryHasIt) {
   RenderScene scene = white_room(9, 9);
   scene.sky = {Vec3f::Zero(), Vec3f::Zero(), Vec3f::Zero()};
@@ -119,7 +123,8 @@ TEST(Glow, SphereLightsTheFloorAsTheoryHasIt) {
   EXPECT_NEAR(radiance_at(trace(ball, scene, samples(1024)), 40).x(), expected, 0.01 * expected);
 }
 
-/// Deviation of the picture from its mean over seeds, at n and 16 n samples: a quarter, or less as the samples are well spread.
+/// Deviation of the picture from its mean over seeds, at n and 16 n samples: a quarter, or less as the samples are well
+/// spread.
 TEST(Noise, FallsAtLeastAsOneOverTheRoot) {
   RenderScene scene = white_room(40, 24);
   scene.sky = {Vec3f::Constant(0.2f), Vec3f::Constant(0.2f), Vec3f::Constant(0.2f)};
@@ -185,7 +190,8 @@ TEST(Lens, CircleOfConfusionHasItsSize) {
   scene.backdrop.low = scene.backdrop.high = Vec3f::Zero();
   scene.camera.eye = Vec3(0.0, 0.0, 4.0);
   scene.camera.target = Vec3(0.0, 0.0, 0.0);
-  scene.camera.vertical_fov_deg = 2.0 * std::atan(0.0075 / 4.0) * 180.0 / std::numbers::pi;  // 1 pixel: 5 mm at the edge
+  scene.camera.vertical_fov_deg =
+      2.0 * std::atan(0.0075 / 4.0) * 180.0 / std::numbers::pi;  // 1 pixel: 5 mm at the edge
   scene.camera.aperture = 0.8;
   scene.camera.focus_distance = 2.0;
   scene.look.specular = 0.0f;

@@ -22,7 +22,8 @@ std::string advice_on(std::vector<std::string> overrides) {
   overrides.emplace_back("particles.count=1000");
   const Scene scene = read_scene(source_folder() / "scenes/melting_bunny.toml", overrides);
   const std::vector<std::string> advice = forecast_scene(scene, 1, false).advice;
-  return std::accumulate(advice.begin(), advice.end(), std::string(), [](const std::string& a, const std::string& b) { return a + b + "\n"; });
+  return std::accumulate(advice.begin(), advice.end(), std::string(),
+                         [](const std::string& a, const std::string& b) { return a + b + "\n"; });
 }
 
 void expect_says(const std::string& advice, const std::string& text) {
@@ -46,7 +47,8 @@ ExpectedSpeed expected_of(const std::string& name, const std::vector<std::string
 
 // What melts and falls may go as fast as a fall through the scene; lava that creeps down a mountain will not.
 TEST(Advise, LavaIsMeasuredByHowItCreeps) {
-  const ExpectedSpeed bunny = expected_of("melting_bunny.toml", {"particles.count=1000", "body.0.translate_m=[0.0, 2.0, 0.0]"});
+  const ExpectedSpeed bunny =
+      expected_of("melting_bunny.toml", {"particles.count=1000", "body.0.translate_m=[0.0, 2.0, 0.0]"});
   expect_says(bunny.reason, "through the whole scene");
   for (const std::string name : {"lava_volcano.toml", "lava_sugarloaf.toml"}) {
     const SimulationSetup setup = build_simulation(read_scene(source_folder() / "scenes" / name, {}));
@@ -75,8 +77,8 @@ TEST(Advise, ANewtonianLayerRunsAtItsExactSpeed) {
                      "emitter.1.position_m=[-240, 200, 80]", "emitter.2.position_m=[-240, 200, 120]"});
     const double q = 1200.0 / 24.0, weight = 2600.0 * 9.81;
     const bool piles = degrees < 5.0;
-    const double d = piles ? std::pow(3.0 * 2e3 * q * 24.0 / weight, 0.25)
-                           : std::cbrt(3.0 * 2e3 * q / (weight * std::sin(slope)));
+    const double d =
+        piles ? std::pow(3.0 * 2e3 * q * 24.0 / weight, 0.25) : std::cbrt(3.0 * 2e3 * q / (weight * std::sin(slope)));
     const double u = weight * (piles ? d / 24.0 : std::sin(slope)) * d * d / 4e3;
     EXPECT_NEAR(found.speed / u, 1.0, 1e-2) << degrees << " degrees: " << found.reason;
   }

@@ -19,7 +19,8 @@ Scene bunny_scene(const std::vector<std::string>& overrides = {}) {
 TEST(BuildSimulation, BunnyHasTheCountAndTheMass) {
   const SimulationSetup setup = build_simulation(bunny_scene());
   EXPECT_NEAR(static_cast<double>(setup.particles.size()), 10188.0, 0.01 * 10188.0);
-  const double mass = static_cast<double>(setup.particles.size()) * setup.parameters.particle_volume * setup.materials[0].density;
+  const double mass =
+      static_cast<double>(setup.particles.size()) * setup.parameters.particle_volume * setup.materials[0].density;
   EXPECT_NEAR(mass / (900.0 * 0.194288), 1.0, 1e-3);
   EXPECT_TRUE(setup.warnings.empty());
 }
@@ -33,8 +34,8 @@ TEST(BuildSimulation, TemperatureRunsFromBottomToTop) {
 }
 
 TEST(BuildSimulation, PlacementScalesTurnsAndStands) {
-  const SimulationSetup setup =
-      build_simulation(bunny_scene({"particles.count=500", "body.0.scale=0.2", "body.0.rotate_deg=[0,0,90]", "body.0.stand_at_y_m=1.5"}));
+  const SimulationSetup setup = build_simulation(bunny_scene(
+      {"particles.count=500", "body.0.scale=0.2", "body.0.rotate_deg=[0,0,90]", "body.0.stand_at_y_m=1.5"}));
   EXPECT_NEAR(setup.body_bounds.lower[1], 1.5, 1e-12);
   // Turned by 90 degrees about z, its length along x is now its height.
   EXPECT_NEAR(setup.body_bounds.extent()[1], 0.2 * (4.94885 + 4.958475), 1e-5);
@@ -46,13 +47,15 @@ TEST(BuildSimulation, BodiesShareTheCountByVolume) {
   scene.bodies[1].placement.scale = 0.2;
   scene.bodies[1].placement.translate = Vec3(3, 0, 0);
   const SimulationSetup setup = build_simulation(scene);
-  const auto n_small = std::count_if(setup.particles.position.begin(), setup.particles.position.end(), [](const Vec3& x) { return x[0] < 1.5; });
+  const auto n_small = std::count_if(setup.particles.position.begin(), setup.particles.position.end(),
+                                     [](const Vec3& x) { return x[0] < 1.5; });
   EXPECT_NEAR(static_cast<double>(n_small), 3000.0 / 9.0, 0.02 * 3000.0 / 9.0);
   EXPECT_NEAR(static_cast<double>(setup.particles.size()), 3000.0, 30.0);
 }
 
 TEST(BuildSimulation, CollidersCarryWhatTheSceneSaysOfThem) {
-  Scene scene = bunny_scene({"particles.count=500", "collider.0.friction=0.4", "collider.0.surface_velocity_m_s=[1,0,0]"});
+  Scene scene =
+      bunny_scene({"particles.count=500", "collider.0.friction=0.4", "collider.0.surface_velocity_m_s=[1,0,0]"});
   scene.colliders.push_back(scene.colliders[0]);
   ColliderSettings& press = scene.colliders[1];
   press.mesh = "assets/bunny.obj";
@@ -128,9 +131,10 @@ TEST(BuildSimulation, SolverChoicesReachTheSolver) {
   EXPECT_EQ(plain.parameters.kernel, KernelType::cubic_spline);
   EXPECT_EQ(plain.parameters.density, DensityForm::continuity);
   EXPECT_TRUE(plain.parameters.period.empty());
-  const SimulationSetup chosen = build_simulation(bunny_scene(
-      {"particles.count=500", "solver.kernel=quintic_spline", "solver.equation_of_state=tait", "solver.background_pressure_Pa=7.5",
-       "solver.density=normalised_summation", "periodic={axes=\"xz\", lower_m=[-2, 9, -3], upper_m=[2, 9, 3]}"}));
+  const SimulationSetup chosen = build_simulation(
+      bunny_scene({"particles.count=500", "solver.kernel=quintic_spline", "solver.equation_of_state=tait",
+                   "solver.background_pressure_Pa=7.5", "solver.density=normalised_summation",
+                   "periodic={axes=\"xz\", lower_m=[-2, 9, -3], upper_m=[2, 9, 3]}"}));
   EXPECT_EQ(chosen.parameters.kernel, KernelType::quintic_spline);
   EXPECT_EQ(chosen.parameters.equation_of_state.law, PressureLaw::tait);
   EXPECT_EQ(chosen.parameters.equation_of_state.background_pressure, 7.5);
@@ -142,7 +146,8 @@ TEST(BuildSimulation, SolverChoicesReachTheSolver) {
 
 TEST(BuildSimulation, RefusesABodyAcrossAPeriodicFace) {
   try {
-    build_simulation(bunny_scene({"particles.count=500", "periodic={axes=\"x\", lower_m=[0, 0, 0], upper_m=[2, 0, 0]}"}));
+    build_simulation(
+        bunny_scene({"particles.count=500", "periodic={axes=\"x\", lower_m=[0, 0, 0], upper_m=[2, 0, 0]}"}));
     FAIL() << "it was accepted";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("m out of the [periodic] box along x"), std::string::npos) << error.what();
@@ -150,8 +155,8 @@ TEST(BuildSimulation, RefusesABodyAcrossAPeriodicFace) {
 }
 
 TEST(BuildSimulation, NewtonianScenesNeedNoRelaxedStress) {
-  const SimulationSetup setup = build_simulation(
-      bunny_scene({"particles.count=500", "material.0.viscosity={law=\"newtonian\", viscosity_Pa_s={cold=10.0,hot=1.0}}"}));
+  const SimulationSetup setup = build_simulation(bunny_scene(
+      {"particles.count=500", "material.0.viscosity={law=\"newtonian\", viscosity_Pa_s={cold=10.0,hot=1.0}}"}));
   EXPECT_EQ(setup.parameters.shear_wave_speed, 0.0);
   EXPECT_EQ(setup.materials[0].rheology.yield_stress.cold, 0.0);
   EXPECT_EQ(setup.materials[0].rheology.consistency.hot, 1.0);

@@ -5,11 +5,11 @@
 #include "tests/source_folder.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <fstream>
 #include <numbers>
+#include <unistd.h>
 
 namespace smelt {
 namespace {
@@ -62,15 +62,17 @@ TEST(BuildView, LavaGlowsAndKeepsItsRange) {
 }
 
 TEST(BuildView, AFiftyMillimetreLens) {
-  const Camera camera = build_view(read_with("[camera]\nfocal_length_m = 0.05\nf_number = 2.0\nshutter = 0.5\n")).camera;
+  const Camera camera =
+      build_view(read_with("[camera]\nfocal_length_m = 0.05\nf_number = 2.0\nshutter = 0.5\n")).camera;
   EXPECT_NEAR(camera.vertical_fov_deg, 2.0 * std::atan(0.012 / 0.05) * 180.0 / std::numbers::pi, 1e-9);
   EXPECT_NEAR(camera.aperture, 0.025, 1e-9);
   EXPECT_NEAR(camera.shutter, 0.5 / 24.0, 1e-12);
 }
 
 TEST(BuildView, CameraFollowsItsKeyframes) {
-  const Scene scene = read_with("[camera]\neye_m = [0.0, 1.0, 5.0]\ntarget_m = [0.0, 0.0, 0.0]\ninterpolation = \"linear\"\n"
-                                "keyframes = [{ time_s = 1.0 }, { time_s = 2.0, eye_m = [4.0, 1.0, 5.0] }]\n");
+  const Scene scene = read_with(
+      "[camera]\neye_m = [0.0, 1.0, 5.0]\ntarget_m = [0.0, 0.0, 0.0]\ninterpolation = \"linear\"\n"
+      "keyframes = [{ time_s = 1.0 }, { time_s = 2.0, eye_m = [4.0, 1.0, 5.0] }]\n");
   const Camera camera = build_view(scene).camera;
   EXPECT_EQ(camera_at(scene, camera, 0.0).eye, Vec3(0.0, 1.0, 5.0));
   EXPECT_LT((camera_at(scene, camera, 1.25).eye - Vec3(1.0, 1.0, 5.0)).norm(), 1e-12);

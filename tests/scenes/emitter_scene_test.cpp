@@ -5,13 +5,15 @@
 #include "scenes/check_scene.h"
 #include "scenes/scene_reader.h"
 #include "scenes/scene_writer.h"
+#include "tests/meshes.h"
 #include "tests/source_folder.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <unistd.h>
 
 namespace smelt {
 namespace {
@@ -61,7 +63,9 @@ std::filesystem::path scene_file() {
   return path;
 }
 
-Scene lava_scene(const std::vector<std::string>& overrides = {}) { return read_scene(scene_file(), overrides); }
+Scene lava_scene(const std::vector<std::string>& overrides = {}) {
+  return read_scene(scene_file(), overrides);
+}
 
 std::string error_of(const std::vector<std::string>& overrides) {
   try {
@@ -100,25 +104,112 @@ TEST(EmitterScene, VentInTheGroundIsToldWhereTheGroundIs) {
   EXPECT_NE(text.find("raise it by 5 m"), std::string::npos) << text;
   EXPECT_EQ(error_of({}), "none");
   EXPECT_NE(error_of({"emitter.0.position_m=[-240.0, 100.0, 0.0]"}).find("raise it by 95 m"), std::string::npos);
-  EXPECT_NE(error_of({"emitter.0.position_m=[-240.0, 205.0, 0.0]", "emitter.0.direction=[0,-1,0]", "particles.spacing_m=4.0"}).find("the ground there at"),
-            std::string::npos)
+  EXPECT_NE(
+      error_of({"emitter.0.position_m=[-240.0, 205.0, 0.0]", "emitter.0.direction=[0,-1,0]", "particles.spacing_m=4.0"})
+          .find("the ground there at"),
+      std::string::npos)
       << "the far end of the duct counts";
 }
 
+TEST(EmitterScene, AVentWithoutAnEndPoursToTheEndOfTheShot) {
+  Scene scene = lava_scene();
+  scene.emitters[0].end.reset();
+  const SimulationSetup setup = build_simulation(scene);
+  const Emitter<3>& emitter = setup.parameters.emitters[0];
+  const auto layers = compute_emitter_layers<3>(emitter, setup.parameters.particle_volume, 4.8);
+  for (const double time : {0.4, 1.0, 1e6}) {
+    const double expected = emitter.flow_rate * time / setup.parameters.particle_volume;
+    EXPECT_NEAR(static_cast<double>(count_entered(emitter, layers, time)), expected,
+                0.5 * static_cast<double>(layers.sites.size()) + 1.0)
+        << time;
+  }
+  EXPECT_DOUBLE_EQ(count_poured(setup, 1.0), 500.0 / 8.0);
+}
+
+// A boulder whose mesh is far from where its first keyframe puts it.
+TEST(EmitterScene, CollidersCountWhereTheyStandAtTheStart) {
+  Scene scene = lava_scene();
+  ColliderSettings boulder;
+  boulder.mesh = "assets/sphere.obj";
+  boulder.temperature = 300.0;
+  boulder.placement.scale = 20.0;
+  boulder.placement.translate = Vec3(-240.0, 300.0, 0.0);
+  KeyframeSettings first, last;
+  first.translate = Vec3(0.0, -100.0, 0.0);
+  last.time = 10.0;
+  boulder.keyframes = {first, last};
+  scene.colliders.push_back(boulder);
+  EXPECT_NE(message_of<Error>([&] { build_simulation(scene); }).find("the vent is in collider 1"), std::string::npos);
+  scene.colliders[1].keyframes[0].translate = Vec3(500.0, 0.0, 0.0);
+  build_simulation(scene);
+}
+
+TEST(EmitterScene, ASheetOfTerrainIsGroundHoweverItIsWound) {
+  TriangleMesh sheet;
+  sheet.vertices = {Vec3(-400, 200, -300), Vec3(400, 200, -300), Vec3(400, 200, 300), Vec3(-400, 200, 300)};
+  for (const bool up : {true, false}) {
+    sheet.triangles = {{0, 3, 2}, {0, 2, 1}};
+    if (!up)
+      for (auto& t : sheet.triangles) std::swap(t[0], t[1]);
+    const auto path = scene_file().parent_path() / "sheet.obj";
+    std::ofstream file(path);
+    for (const Vec3& v : sheet.vertices) file << fmt::format("v {} {} {}\n", v[0], v[1], v[2]);
+    for (const auto& t : sheet.triangles) file << fmt::format("f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+    file.close();
+    const std::string mesh = fmt::format("collider.0.mesh={}", path.string());
+    EXPECT_NE(error_of({mesh}).find("raise it by 3 m"), std::string::npos) << error_of({mesh});
+    EXPECT_EQ(error_of({mesh, "emitter.0.position_m=[-240.0, 200.5, 0.0]"}), "none");
+  }
+}
+
+TEST(EmitterScene, VentsThatPourIntoEachOtherAreRefused) {
+  Scene scene = lava_scene();
+  EmitterSettings other = scene.emitters[0];
+  other.position += Vec3(14.0, 12.0, 0.0);
+  scene.emitters.push_back(other);
+  build_simulation(scene);
+  scene.emitters[1].position[0] -= 10.0;
+  scene.emitters[1].position[1] -= 12.0;
+  EXPECT_NE(message_of<Error>([&] { build_simulation(scene); }).find("pours into that of emitter 0"),
+            std::string::npos);
+  scene.emitters[1].start = 0.6;
+  scene.emitters[1].end = 0.9;
+  build_simulation(scene);
+}
+
+// Nothing but a vent: the domain must hold what it pours.
+TEST(EmitterScene, TheDomainHoldsThePile) {
+  Scene scene = lava_scene();
+  scene.colliders.clear();
+  scene.outflows.clear();
+  const SimulationSetup setup = build_simulation(scene);
+  const double side = std::cbrt(0.6 * 500.0);
+  EXPECT_DOUBLE_EQ(pile_size(scene, scene.emitters[0]), side);
+  EXPECT_LT(setup.parameters.domain.lower[0], -240.0 - 10.0 * side);
+  EXPECT_GT(setup.parameters.domain.upper[1], 197.0 + 10.0 * side);
+}
+
 TEST(EmitterScene, RefusesWhatCannotPour) {
-  EXPECT_NE(error_of({"emitter.0.flow_rate_m3_s=0"}).find("emitter.0.flow_rate_m3_s: must be a number above 0"), std::string::npos);
-  EXPECT_NE(error_of({"emitter.0.radius_m=1.5"}).find("emitter.0.radius_m: must be at least the spacing of particles, 2 m"), std::string::npos);
-  EXPECT_NE(error_of({"emitter.0.start_s=0.7"}).find("emitter.0.end_s: must be after start_s = 0.7, is 0.6"), std::string::npos);
+  EXPECT_NE(error_of({"emitter.0.flow_rate_m3_s=0"}).find("emitter.0.flow_rate_m3_s: must be a number above 0"),
+            std::string::npos);
+  EXPECT_NE(
+      error_of({"emitter.0.radius_m=1.5"}).find("emitter.0.radius_m: must be at least the spacing of particles, 2 m"),
+      std::string::npos);
+  EXPECT_NE(error_of({"emitter.0.start_s=0.7"}).find("emitter.0.end_s: must be after start_s = 0.7, is 0.6"),
+            std::string::npos);
   EXPECT_NE(error_of({"emitter.0.material=lawa"}).find("did you mean \"lava\"?"), std::string::npos);
   EXPECT_NE(error_of({"emitter.0.direction=[0,0,0]"}).find("emitter.0.direction: must not be zero"), std::string::npos);
   EXPECT_NE(error_of({"solver.density=summation"}).find("emitter.0: goes with [solver] density"), std::string::npos);
-  EXPECT_NE(error_of({"outflow.0.upper_m=[-500,0,0]"}).find("outflow.0.upper_m: must be above lower_m"), std::string::npos);
-  EXPECT_NE(error_of({"collider.0.mesh=assets/bunny.obj", "collider.0.terrain.refine=2"}).find("is no height field"), std::string::npos);
+  EXPECT_NE(error_of({"outflow.0.upper_m=[-500,0,0]"}).find("outflow.0.upper_m: must be above lower_m"),
+            std::string::npos);
+  EXPECT_NE(error_of({"collider.0.mesh=assets/bunny.obj", "collider.0.terrain.refine=2"}).find("is no height field"),
+            std::string::npos);
   EXPECT_NE(error_of({"collider.0.until_s=0"}).find("collider.0.until_s: must be a number above 0"), std::string::npos);
 }
 
 TEST(EmitterScene, TerrainIsRefinedAndPlaced) {
-  const Scene scene = lava_scene({"collider.0.terrain.refine=2", "collider.0.translate_m=[0,10,0]", "collider.0.terrain.depth_m=20"});
+  const Scene scene =
+      lava_scene({"collider.0.terrain.refine=2", "collider.0.translate_m=[0,10,0]", "collider.0.terrain.depth_m=20"});
   const TriangleMesh mesh = import_placed_collider(scene, 0);
   const Box3 bounds = compute_bounds(mesh);
   EXPECT_TRUE(compute_topology(mesh).closed());

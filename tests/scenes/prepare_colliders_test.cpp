@@ -1,11 +1,15 @@
 // Colliders as people hand them in: wound the wrong way, open, of another unit, where fluid starts.
 
 #include "core/error.h"
+#include "core/geometry/orientation.h"
 #include "scenes/build_simulation.h"
 #include "scenes/scene_reader.h"
 #include "tests/meshes.h"
 
 #include <gtest/gtest.h>
+
+#include <fstream>
+#include <unistd.h>
 
 namespace smelt {
 namespace {
@@ -19,6 +23,15 @@ Scene scene_with(const std::string& mesh, double scale, const Vec3& translate) {
   collider.placement.translate = translate;
   scene.colliders = {collider};
   return scene;
+}
+
+/// Path of an OBJ file of `mesh`.
+std::string write_obj(const std::string& name, const TriangleMesh& mesh) {
+  const std::string path = fmt::format("{}smelt_{}_{}", testing::TempDir(), ::getpid(), name);
+  std::ofstream file(path);
+  for (const Vec3& v : mesh.vertices) file << "v " << v[0] << " " << v[1] << " " << v[2] << "\n";
+  for (const auto& t : mesh.triangles) file << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
+  return path;
 }
 
 /// Whether exactly one warning was given, of the collider, with these words in it.
@@ -36,13 +49,7 @@ TEST(PrepareColliders, InvertedSolidIsTurned) {
 }
 
 TEST(PrepareColliders, AVesselMayBeWoundEitherWay) {
-  const std::string outward = testing::TempDir() + "smelt_outward_box.obj";
-  {
-    std::ofstream file(outward);
-    const TriangleMesh box = make_box(Vec3::Zero(), Vec3::Ones());
-    for (const Vec3& v : box.vertices) file << "v " << v[0] << " " << v[1] << " " << v[2] << "\n";
-    for (const auto& t : box.triangles) file << "f " << t[0] + 1 << " " << t[1] + 1 << " " << t[2] + 1 << "\n";
-  }
+  const std::string outward = write_obj("outward_box.obj", make_box(Vec3::Zero(), Vec3::Ones()));
   for (const std::string& mesh : {std::string("assets/bad/inverted_box.obj"), outward}) {
     const SimulationSetup setup = build_simulation(scene_with(mesh, 4.0, Vec3(-2, -1, -2)));
     EXPECT_FALSE(setup.obstacles[0].closed) << mesh;
@@ -50,9 +57,18 @@ TEST(PrepareColliders, AVesselMayBeWoundEitherWay) {
   }
 }
 
-TEST(PrepareColliders, WhatIsNotQuiteClosedIsASheetAndSaidToBe) {
+TEST(PrepareColliders, FacesAgainstTheirNeighboursAreTurned) {
   const SimulationSetup setup = build_simulation(scene_with("assets/bad/misoriented_box.obj", 1.0, Vec3(5, 0, 0)));
-  expect_warning(setup, "misoriented_box.obj", "sheet with two sides");
+  expect_warning(setup, "misoriented_box.obj", "were wound against their neighbours: turned round");
+  EXPECT_TRUE(setup.obstacles[0].closed);
+  EXPECT_TRUE(compute_topology(setup.colliders[0]).closed());
+}
+
+TEST(PrepareColliders, WhatIsNotQuiteClosedIsASheetAndSaidToBe) {
+  TriangleMesh ball = load_asset("sphere.obj");
+  ball.triangles.pop_back();
+  const SimulationSetup setup = build_simulation(scene_with(write_obj("almost_closed.obj", ball), 1.0, Vec3(5, 0, 0)));
+  expect_warning(setup, "almost_closed.obj", "sheet with two sides");
   EXPECT_FALSE(setup.obstacles[0].closed);
   // Open on purpose.
   EXPECT_TRUE(build_simulation(scene_with("assets/bad/open_box.obj", 1.0, Vec3(5, 0, 0))).warnings.empty());
@@ -65,6 +81,16 @@ TEST(PrepareColliders, ASheetMayBeFlatButNotEmptyOrNaN) {
     const std::string message = message_of<Error>([&] { build_simulation(scene_with(bad, 1.0, Vec3::Zero())); });
     EXPECT_NE(message.find(bad), std::string::npos) << message;
   }
+}
+
+// Seen from both sides, as modelling programs export them, and looking down.
+TEST(PrepareColliders, ASheetOfDoubledFacesIsOneThatLooksUp) {
+  TriangleMesh sheet;
+  sheet.vertices = {Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 0, 1), Vec3(0, 0, 1)};
+  sheet.triangles = {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}};
+  const SimulationSetup setup = build_simulation(scene_with(write_obj("doubled.obj", sheet), 1.0, Vec3(5, 0, 0)));
+  expect_warning(setup, "doubled.obj", "2 of the collider's 4 faces lie on others: left out");
+  EXPECT_NEAR((compute_vector_area(setup.colliders[0]) - Vec3::UnitY()).norm(), 0.0, 1e-12);
 }
 
 TEST(PrepareColliders, SizesThatNoUnitFitsAreNamed) {

@@ -7,10 +7,10 @@
 #include "tests/source_folder.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <string>
+#include <unistd.h>
 
 namespace smelt {
 namespace {
@@ -83,29 +83,46 @@ TEST(SceneReader, ReadsWhatIsThereAndDefaultsTheRest) {
 }
 
 TEST(SceneReader, UnknownKeyNamesTheNearest) {
-  expect_error(replaced(good_scene, "frames = 10", "frames = 10\nfpss = 25"), "scene_reader_test.toml:5: shot.fpss: unknown key",
-               "did you mean `fps`?");
-  expect_error(replaced(good_scene, "density_kg_m3 = 900", "density_kg_m3 = 900\ndensity = 900"), ":12: material.0.density: unknown key",
-               "did you mean `density_kg_m3`?");
+  expect_error(replaced(good_scene, "frames = 10", "frames = 10\nfpss = 25"),
+               "scene_reader_test.toml:5: shot.fpss: unknown key", "did you mean `fps`?");
+  expect_error(replaced(good_scene, "density_kg_m3 = 900", "density_kg_m3 = 900\ndensity = 900"),
+               ":12: material.0.density: unknown key", "did you mean `density_kg_m3`?");
   expect_error(std::string(good_scene) + "[graviti]\n", "graviti: unknown key", "did you mean `gravity`?");
 }
 
+TEST(SceneReader, APowerLawFluidNeedsARelaxedStress) {
+  const std::string melts =
+      replaced(good_scene, "yield_stress_Pa = 50.0", "yield_stress_Pa = { cold = 50.0, hot = 0.0 }");
+  read_scene(write_scene_file(melts));
+  expect_error(melts + "[solver]\nshear_wave_speed_m_s = 0\n", "solver.shear_wave_speed_m_s",
+               "is a power-law fluid where its yield_stress_Pa is 0");
+  read_scene(write_scene_file(replaced(melts, "index = 0.5", "index = 1.0") + "[solver]\nshear_wave_speed_m_s = 0\n"));
+}
+
 TEST(SceneReader, WrongTypeMissingKeyAndRange) {
-  expect_error(replaced(good_scene, "frames = 10", "frames = \"ten\""), ":4: shot.frames", "must be a whole number from 1 and up to 100000, is a text");
+  expect_error(replaced(good_scene, "frames = 10", "frames = \"ten\""), ":4: shot.frames",
+               "must be a whole number from 1 and up to 100000, is a text");
   expect_error(replaced(good_scene, "frames = 10", ""), ":2: shot.frames", "missing: number of frames");
   expect_error(replaced(good_scene, "frames = 10", "frames = 0"), ":4: shot.frames", "is 0");
-  expect_error(replaced(good_scene, "index = 0.5", "index = 1.5"), "material.0.viscosity.index", "above 0 and up to 1, is 1.5");
-  expect_error(replaced(good_scene, "density_kg_m3 = 900", "density_kg_m3 = nan"), ":11: material.0.density_kg_m3", "is nan");
-  expect_error(replaced(good_scene, "law = \"smd\"", "law = \"smud\""), "viscosity.law", "\"smud\" is none of smd, newtonian, inviscid");
-  expect_error(replaced(good_scene, "{ bottom = 300.0, top = 400.0 }", "{ bottom = 300.0 }"), "temperature_K.top", "missing");
+  expect_error(replaced(good_scene, "index = 0.5", "index = 1.5"), "material.0.viscosity.index",
+               "above 0 and up to 1, is 1.5");
+  expect_error(replaced(good_scene, "density_kg_m3 = 900", "density_kg_m3 = nan"), ":11: material.0.density_kg_m3",
+               "is nan");
+  expect_error(replaced(good_scene, "law = \"smd\"", "law = \"smud\""), "viscosity.law",
+               "\"smud\" is none of smd, newtonian, inviscid");
+  expect_error(replaced(good_scene, "{ bottom = 300.0, top = 400.0 }", "{ bottom = 300.0 }"), "temperature_K.top",
+               "missing");
 }
 
 TEST(SceneReader, ContradictionsAndNames) {
-  expect_error(replaced(good_scene, "count = 100", "count = 100\nspacing_m = 0.1"), ":8: particles.spacing_m", "not both");
+  expect_error(replaced(good_scene, "count = 100", "count = 100\nspacing_m = 0.1"), ":8: particles.spacing_m",
+               "not both");
   expect_error(replaced(good_scene, "count = 100", ""), ":6: particles.count", "give count or spacing_m");
-  expect_error(replaced(good_scene, "material = \"wax\"", "material = \"wacks\""), ":17: body.0.material", "there is no [[material]] named \"wacks\"");
+  expect_error(replaced(good_scene, "material = \"wax\"", "material = \"wacks\""), ":17: body.0.material",
+               "there is no [[material]] named \"wacks\"");
   expect_error(replaced(good_scene, "assets/bunny.obj", "assets/bunni.obj"), ":16: body.0.mesh", "there is no file");
-  expect_error(replaced(good_scene, "index = 0.5", "index = 0.5, rest_viscosity_Pa_s = 5.0"), "rest_viscosity_Pa_s", "not both");
+  expect_error(replaced(good_scene, "index = 0.5", "index = 0.5, rest_viscosity_Pa_s = 5.0"), "rest_viscosity_Pa_s",
+               "not both");
   expect_error(replaced(good_scene, "hot_K = 400.0", "hot_K = 300.0"), "heat.hot_K", "must be above cold_K = 300");
   expect_error(replaced(good_scene, "heat = {", "# heat = {"), "temperature_K", "has no heat");
 }
@@ -145,7 +162,8 @@ TEST(SceneReader, RigidBodies) {
 TEST(SceneReader, PeriodicBox) {
   const std::string box = std::string(good_scene) + "[periodic]\n";
   expect_error(box, "periodic.lower_m: missing", "periodic.upper_m: missing");
-  expect_error(box + "lower_m = [0, 0, 0]\nupper_m = [1, 1, 0]\naxes = \"xz\"\n", ":24: periodic.upper_m", "must be above lower_m along z, is 0 and 0");
+  expect_error(box + "lower_m = [0, 0, 0]\nupper_m = [1, 1, 0]\naxes = \"xz\"\n", ":24: periodic.upper_m",
+               "must be above lower_m along z, is 0 and 0");
   expect_error(box + "axes = \"zx\"\n", ":23: periodic.axes", "\"zx\" is none of x, y, z, xy, xz, yz, xyz");
   const Scene scene = read_scene(write_scene_file(box + "lower_m = [0, 0, 0]\nupper_m = [1, 1, 0]\naxes = \"xy\"\n"));
   EXPECT_EQ(scene.periodic->axes, "xy");
@@ -156,17 +174,21 @@ TEST(SceneReader, PeriodicBox) {
 
 TEST(SceneReader, SolverChoices) {
   const std::string solver = std::string(good_scene) + "[solver]\n";
-  expect_error(solver + "kernel = \"gaussian\"\n", ":23: solver.kernel", "is none of cubic_spline, quintic_spline, quadratic");
+  expect_error(solver + "kernel = \"gaussian\"\n", ":23: solver.kernel",
+               "is none of cubic_spline, quintic_spline, quadratic");
   expect_error(solver + "equation_of_state = \"ideal_gas\"\n", "solver.equation_of_state", "is none of linear, tait");
-  expect_error(solver + "density = \"sum\"\n", "solver.density", "is none of continuity, summation, normalised_summation");
+  expect_error(solver + "density = \"sum\"\n", "solver.density",
+               "is none of continuity, summation, normalised_summation");
   expect_error(solver + "background_pressure_Pa = -1\n", "solver.background_pressure_Pa", "of at least 0, is -1");
 }
 
 TEST(SceneReader, ColliderChoices) {
   const std::string ground = std::string(good_scene) + "[[collider]]\nmesh = \"ground\"\n";
-  expect_error(ground + "velocity_m_s = [0, 1, 0]\n", "collider.1.velocity_m_s", "the ground has no end and cannot move");
+  expect_error(ground + "velocity_m_s = [0, 1, 0]\n", "collider.1.velocity_m_s",
+               "the ground has no end and cannot move");
   expect_error(ground + "wall = 1\n", "collider.1.wall", "must be true or false");
-  expect_error(ground + "temperature_K = 500\nwall = false\n", "collider.1.temperature_K", "heat passes through walls only");
+  expect_error(ground + "temperature_K = 500\nwall = false\n", "collider.1.temperature_K",
+               "heat passes through walls only");
 }
 
 /// The good scene with more in its heat.
@@ -178,7 +200,8 @@ const std::string with_air = "[ambient]\ntemperature_K = 290\nheat_transfer_W_m2
 TEST(SceneReader, LatentHeatAndWhatTheSurfaceLoses) {
   const Scene scene = read_scene(write_scene_file(
       with_heat("specific_heat_J_kgK = 2000, latent_heat_J_kg = 2e5, emissivity = 0.9") + with_air +
-      "[[heat_source]]\nposition_m = [1, 2, 3]\nradius_m = 0.1\ntemperature_K = 1600\nheat_transfer_W_m2K = 50\nfrom_s = 1\nuntil_s = 2\n"));
+      "[[heat_source]]\nposition_m = [1, 2, 3]\nradius_m = 0.1\ntemperature_K = 1600\nheat_transfer_W_m2K = 50\n"
+      "from_s = 1\nuntil_s = 2\n"));
   EXPECT_EQ(scene.materials[0].heat->specific_heat, 2000.0);
   EXPECT_EQ(scene.materials[0].heat->latent_heat, 2e5);
   EXPECT_EQ(*scene.ambient->temperature, 290.0);
@@ -192,14 +215,17 @@ TEST(SceneReader, LatentHeatAndWhatTheSurfaceLoses) {
 
 TEST(SceneReader, HeatThatCannotBe) {
   expect_error(with_heat("latent_heat_J_kg = 2e5"), "heat.latent_heat_J_kg", "needs specific_heat_J_kgK");
-  expect_error(with_heat("specific_heat_J_kgK = 2000, emissivity = 1.5") + with_air, "heat.emissivity", "from 0 and up to 1, is 1.5");
+  expect_error(with_heat("specific_heat_J_kgK = 2000, emissivity = 1.5") + with_air, "heat.emissivity",
+               "from 0 and up to 1, is 1.5");
   expect_error(with_heat("specific_heat_J_kgK = 2000, emissivity = 0.9"), "heat.emissivity", "needs an [ambient]");
-  expect_error(with_heat("specific_heat_J_kgK = 2000") + "[ambient]\nheat_transfer_W_m2K = 10\n", ":22: ambient.temperature_K", "missing");
-  expect_error(with_heat("specific_heat_J_kgK = 2000") + "[ambient]\ntemperature_K = 290\n", "ambient.heat_transfer_W_m2K",
-               "nothing is lost");
+  expect_error(with_heat("specific_heat_J_kgK = 2000") + "[ambient]\nheat_transfer_W_m2K = 10\n",
+               ":22: ambient.temperature_K", "missing");
+  expect_error(with_heat("specific_heat_J_kgK = 2000") + "[ambient]\ntemperature_K = 290\n",
+               "ambient.heat_transfer_W_m2K", "nothing is lost");
   expect_error(with_heat("specific_heat_J_kgK = 2000") + "[ambient]\ntemperature_K = -5\nheat_transfer_W_m2K = 1\n",
                ":23: ambient.temperature_K", "of at least 0, is -5");
-  expect_error(std::string(good_scene) + with_air, "heat.specific_heat_J_kgK", "missing: [ambient] and [[heat_source]] exchange energy");
+  expect_error(std::string(good_scene) + with_air, "heat.specific_heat_J_kgK",
+               "missing: [ambient] and [[heat_source]] exchange energy");
   expect_error(replaced(good_scene, "cold_K = 300.0", "cold_K = -300.0"), "heat.cold_K", "of at least 0, is -300");
 }
 
@@ -209,15 +235,20 @@ TEST(SceneReader, HeatSourcesThatCannotBe) {
   expect_error(source + "radius_m = 1\n", "heat_source.0.power_W", "give power_W, or temperature_K");
   expect_error(source + "radius_m = 1\npower_W = 5\ntemperature_K = 900\n", "heat_source.0.power_W", "not both");
   expect_error(source + "radius_m = 1\ntemperature_K = 900\n", "heat_source.0.heat_transfer_W_m2K", "missing");
-  expect_error(source + "radius_m = 1\npower_W = 5\nfrom_s = 3\nuntil_s = 2\n", "heat_source.0.until_s", "must be after from_s = 3, is 2");
+  expect_error(source + "radius_m = 1\npower_W = 5\nfrom_s = 3\nuntil_s = 2\n", "heat_source.0.until_s",
+               "must be after from_s = 3, is 2");
   expect_error(source + "radius_m = 0\npower_W = 5\n", "heat_source.0.radius_m", "above 0, is 0");
 }
 
 TEST(SceneReader, PropertiesThatFollowTemperature) {
-  const auto with_yield = [](const std::string& value) { return replaced(good_scene, "yield_stress_Pa = 50.0", "yield_stress_Pa = " + value); };
-  const Scene table = read_scene(write_scene_file(with_yield("{ temperature_K = [300, 350, 400], values = [50, 5, 0] }")));
+  const auto with_yield = [](const std::string& value) {
+    return replaced(good_scene, "yield_stress_Pa = 50.0", "yield_stress_Pa = " + value);
+  };
+  const Scene table =
+      read_scene(write_scene_file(with_yield("{ temperature_K = [300, 350, 400], values = [50, 5, 0] }")));
   EXPECT_EQ(table.materials[0].viscosity.yield_stress->value, (std::vector<double>{50.0, 5.0, 0.0}));
-  const Scene exponential = read_scene(write_scene_file(with_yield("{ reference = 50, reference_K = 300, rate_1_K = 0.05 }")));
+  const Scene exponential =
+      read_scene(write_scene_file(with_yield("{ reference = 50, reference_K = 300, rate_1_K = 0.05 }")));
   EXPECT_EQ(exponential.materials[0].viscosity.yield_stress->rate, 0.05);
   for (const Scene& scene : {table, exponential}) {
     const std::string text = write_scene(scene);
@@ -225,12 +256,14 @@ TEST(SceneReader, PropertiesThatFollowTemperature) {
   }
   expect_error(with_yield("{ temperature_K = [300, 350, 350], values = [50, 5, 0] }"), "yield_stress_Pa.temperature_K",
                "must rise from one to the next, but 350 is followed by 350");
-  expect_error(with_yield("{ temperature_K = [300, 350], values = [50] }"), "yield_stress_Pa.values", "must be as many as temperature_K, which has 2, are 1");
+  expect_error(with_yield("{ temperature_K = [300, 350], values = [50] }"), "yield_stress_Pa.values",
+               "must be as many as temperature_K, which has 2, are 1");
   expect_error(with_yield("{ temperature_K = [300], values = [50] }"), "yield_stress_Pa.temperature_K", "at least two");
-  expect_error(with_yield("{ temperature_K = [300, 350], values = [50, -1] }"), "yield_stress_Pa.values[1]", "of at least 0, is -1");
+  expect_error(with_yield("{ temperature_K = [300, 350], values = [50, -1] }"), "yield_stress_Pa.values[1]",
+               "of at least 0, is -1");
   expect_error(with_yield("{ reference = 50, rate_1_K = 0.05 }"), "yield_stress_Pa.reference_K", "missing");
-  expect_error(replaced(with_yield("{ reference = 50, reference_K = 300, rate_1_K = 0.05 }"), "heat = {", "# heat = {"), "yield_stress_Pa",
-               "follows temperature, but the material has no heat");
+  expect_error(replaced(with_yield("{ reference = 50, reference_K = 300, rate_1_K = 0.05 }"), "heat = {", "# heat = {"),
+               "yield_stress_Pa", "follows temperature, but the material has no heat");
 }
 
 TEST(SceneReader, ReportsAllErrorsAtOnceInTheOrderOfTheFile) {
@@ -239,7 +272,8 @@ TEST(SceneReader, ReportsAllErrorsAtOnceInTheOrderOfTheFile) {
   bad = replaced(bad, "count = 100", "count = 1.5");
   const std::string error = error_of(bad);
   EXPECT_EQ(error.find("4 errors in"), 0u) << error;
-  const std::size_t a = error.find("shot.frames"), b = error.find("shot.colour"), c = error.find("particles.count"), d = error.find("body.0.material");
+  const std::size_t a = error.find("shot.frames"), b = error.find("shot.colour"), c = error.find("particles.count"),
+                    d = error.find("body.0.material");
   EXPECT_LT(a, b);
   EXPECT_LT(b, c);
   EXPECT_LT(c, d);
@@ -259,9 +293,11 @@ TEST(SceneReader, OverridesFromTheCommandLine) {
   EXPECT_EQ(*scene.bodies[0].placement.scale, 0.5);
   EXPECT_EQ(scene.surface.iso_value, 0.4);
   EXPECT_EQ(scene.shot.name, "other");
-  EXPECT_NE(error_of(good_scene, {"shot.framse=3"}).find("--set shot.framse=3: shot.framse: unknown key; did you mean `frames`?"),
+  EXPECT_NE(error_of(good_scene, {"shot.framse=3"})
+                .find("--set shot.framse=3: shot.framse: unknown key; did you mean `frames`?"),
             std::string::npos);
-  EXPECT_NE(error_of(good_scene, {"shot.frames=0"}).find("--set shot.frames=0: shot.frames: must be"), std::string::npos);
+  EXPECT_NE(error_of(good_scene, {"shot.frames=0"}).find("--set shot.frames=0: shot.frames: must be"),
+            std::string::npos);
   EXPECT_NE(error_of(good_scene, {"body.3.scale=1"}).find("must be a number below 1"), std::string::npos);
   EXPECT_NE(error_of(good_scene, {"nonsense"}).find("must be key.path=value"), std::string::npos);
 }

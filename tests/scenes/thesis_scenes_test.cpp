@@ -1,11 +1,10 @@
 // The shots of [P table 6.2] hold as many particles as the table says.
 
+#include "bench/thesis_bench.h"
 #include "scenes/build_simulation.h"
 #include "scenes/scene_reader.h"
 
 #include <gtest/gtest.h>
-
-#include "bench/thesis_bench.h"
 
 namespace smelt {
 namespace {

@@ -44,7 +44,8 @@ TEST(Containers, Dragon) {
   test_container(make_dragon());
 }
 
-// On a floor, in an edge, in a corner and in the tip of a funnel, pressed down by gravity. A million steps take minutes; fewer do for every day.
+// On a floor, in an edge, in a corner and in the tip of a funnel, pressed down by gravity. A million steps take
+// minutes; fewer do for every day.
 TEST(Containers, RestingSpheresStayWhereTheyAre) {
   const int n_steps = full_run() ? 1000000 : 5000;
   const Container box = make_closed_box(), funnel = make_funnel();

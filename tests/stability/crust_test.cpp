@@ -35,7 +35,8 @@ Material make_lava() {
   return m;
 }
 
-// A cold ridge 0.2 m wide and 0.1 m high on the ground; hot lava starts on its left half and runs down over both its sides.
+// A cold ridge 0.2 m wide and 0.1 m high on the ground; hot lava starts on its left half and runs down over both its
+// sides.
 TEST(Crust, LaterLavaFlowsOverWhatHasSet) {
   auto parameters = make_water_parameters(spacing, 0.25, 0.2);
   parameters.density_diffusion = 0.0;

@@ -1,6 +1,7 @@
 // Scenes at the edge of what the method can be asked: each must end, finite and with no energy from nowhere.
 
 #include "bench/cases/extremes.h"
+
 #include "tests/stability/watch.h"
 
 #include <algorithm>

@@ -48,8 +48,8 @@ std::string find_defect_of(const DenseGrid& grid, const Lattice& origin) {
     found = {static_cast<int>(t.euler_characteristic), static_cast<int>(t.n_components)};
   }
   if (found == wanted) return "";
-  return fmt::format("Euler characteristic {}, pieces {}, genus {}; of the interpolant {}, {}, {}", found.euler, found.n_components, found.genus(),
-                     wanted.euler, wanted.n_components, wanted.genus());
+  return fmt::format("Euler characteristic {}, pieces {}, genus {}; of the interpolant {}, {}, {}", found.euler,
+                     found.n_components, found.genus(), wanted.euler, wanted.n_components, wanted.genus());
 }
 
 std::string find_random_defect(unsigned seed, bool with_ties) {
@@ -85,7 +85,8 @@ TEST(MarchingCubes, EverySignPatternHasTheTopologyOfTheInterpolant) {
   for (int pattern = 0; pattern < 256; ++pattern)
     for (int round = 0; round < n_rounds; ++round) {
       DenseGrid grid = make_grid({2, 2, 2});
-      for (int c = 0; c < 8; ++c) grid.value[c] = iso * (1.0f + ((pattern >> c & 1) != 0 ? 1.0f : -1.0f) * std::pow(10.0f, exponent(random)));
+      for (int c = 0; c < 8; ++c)
+        grid.value[c] = iso * (1.0f + ((pattern >> c & 1) != 0 ? 1.0f : -1.0f) * std::pow(10.0f, exponent(random)));
       ASSERT_EQ(find_defect_of(grid, {1, 1, 1}), "") << "pattern " << pattern << " round " << round;
     }
 }

@@ -55,8 +55,9 @@ inline std::string find_defect(const TriangleMesh& mesh) {
   return "";
 }
 
-/// A closed piece that winds the wrong way: outer surfaces have positive volume, cavities negative, and a piece inside an odd number of others is a
-/// cavity. Counts crossings of a ray along x from a vertex of each piece through the others.
+/// A closed piece that winds the wrong way: outer surfaces have positive volume, cavities negative, and a piece inside
+/// an odd number of others is a cavity. Counts crossings of a ray along x from a vertex of each piece through the
+/// others.
 inline std::string find_inverted_piece(const TriangleMesh& mesh) {
   std::vector<std::uint32_t> piece(mesh.vertices.size());
   for (std::uint32_t v = 0; v < piece.size(); ++v) piece[v] = v;

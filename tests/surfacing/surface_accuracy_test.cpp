@@ -49,10 +49,11 @@ class Nearest {
 };
 
 class SurfaceAccuracy : public ::testing::TestWithParam<bool> {};
-INSTANTIATE_TEST_SUITE_P(Kernels, SurfaceAccuracy, ::testing::Bool(), [](const auto& p) { return p.param ? "Anisotropic" : "Isotropic"; });
+INSTANTIATE_TEST_SUITE_P(Kernels, SurfaceAccuracy, ::testing::Bool(),
+                         [](const auto& p) { return p.param ? "Anisotropic" : "Isotropic"; });
 
-/// Bars: radius 1 %, volume 0.5 %, normals 3 degrees RMS. An isotropic kernel draws a ball of radius r in by 0.3 h^2/r, 0.5 % of the volume at this
-/// size, and keeps a bar of 1 %.
+/// Bars: radius 1 %, volume 0.5 %, normals 3 degrees RMS. An isotropic kernel draws a ball of radius r in by 0.3 h^2/r,
+/// 0.5 % of the volume at this size, and keeps a bar of 1 %.
 TEST_P(SurfaceAccuracy, ABallOfTenThousandParticles) {
   const double spacing = 0.02, radius = spacing * std::cbrt(3.0 * 10000.0 / (4.0 * std::numbers::pi));
   for (const double shaken : {0.0, 0.1, 0.2}) {
@@ -62,8 +63,9 @@ TEST_P(SurfaceAccuracy, ABallOfTenThousandParticles) {
     ASSERT_EQ(testing::find_defect(surface.mesh), "");
     ASSERT_EQ(compute_topology(surface.mesh).euler_characteristic, 2);
     const BallErrors errors = measure_ball(surface, frame, radius);
-    std::printf("shaken by %.1f: mean radius %+.2f %%, farthest %.2f %%, volume %+.2f %%, normals %.2f degrees\n", shaken, 100.0 * errors.mean_radius,
-                100.0 * errors.farthest, 100.0 * errors.volume, degrees(errors.normals));
+    std::printf("shaken by %.1f: mean radius %+.2f %%, farthest %.2f %%, volume %+.2f %%, normals %.2f degrees\n",
+                shaken, 100.0 * errors.mean_radius, 100.0 * errors.farthest, 100.0 * errors.volume,
+                degrees(errors.normals));
     EXPECT_NEAR(errors.mean_radius, 0.0, 0.01);
     EXPECT_NEAR(errors.volume, 0.0, GetParam() ? 0.005 : 0.01);
     EXPECT_LT(degrees(errors.normals), 3.0);
@@ -79,10 +81,14 @@ TEST_P(SurfaceAccuracy, TheBunnyFromItsOwnParticles) {
   const double spacing = seeds.spacing;  // n spacing^3 is the volume
   const SurfaceMesh surface = build_surface(make_frame(seeds.positions, spacing), with_kernels(GetParam()));
   ASSERT_EQ(testing::find_defect(surface.mesh), "");
-  const Distances there = distances(surface.mesh, bunny, 4.0 * spacing), back = distances(bunny, surface.mesh, 4.0 * spacing);
+  const Distances there = distances(surface.mesh, bunny, 4.0 * spacing),
+                  back = distances(bunny, surface.mesh, 4.0 * spacing);
   const double volume = compute_volume(surface.mesh) / compute_volume(bunny);
-  std::printf("%zu seeds in thin parts; to the mesh: largest %.2f spacings, mean %.3f; from it: largest %.2f, mean %.3f; volume %+.2f %%\n", seeds.n_in_thin_parts,
-              there.largest / spacing, there.mean / spacing, back.largest / spacing, back.mean / spacing, 100.0 * (volume - 1.0));
+  std::printf(
+      "%zu seeds in thin parts; to the mesh: largest %.2f spacings, mean %.3f; from it: largest %.2f, mean %.3f; "
+      "volume %+.2f %%\n",
+      seeds.n_in_thin_parts, there.largest / spacing, there.mean / spacing, back.largest / spacing, back.mean / spacing,
+      100.0 * (volume - 1.0));
   EXPECT_LT(std::max(there.largest, back.largest), spacing);
   EXPECT_LT(std::max(there.mean, back.mean), 0.25 * spacing);
   EXPECT_NEAR(volume, 1.0, 0.01);
@@ -107,7 +113,8 @@ TEST_P(SurfaceAccuracy, NormalsStandStillWhileABodyTurns) {
       const Vec3 x = turn * before.mesh.vertices[v];
       const std::uint32_t w = nearest.vertex(x, spacing);
       // The ball's own turn of the normal from x to the vertex is no flicker.
-      const Vec3 along = Eigen::Quaterniond::FromTwoVectors(x, now.mesh.vertices[w]) * (turn * before.normals[v].cast<double>());
+      const Vec3 along =
+          Eigen::Quaterniond::FromTwoVectors(x, now.mesh.vertices[w]) * (turn * before.normals[v].cast<double>());
       angle += std::pow(std::acos(std::clamp(along.dot(now.normals[w].cast<double>()), -1.0, 1.0)), 2);
       n += 1.0;
     }

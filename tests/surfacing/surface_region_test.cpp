@@ -25,7 +25,8 @@ std::vector<Vec3> make_fluid(std::mt19937& random, int n, double spacing, double
   for (int k = 0; k < n; ++k)
     for (int j = 0; j < n; ++j)
       for (int i = 0; i < n; ++i)
-        if (const Vec3 at = spacing * Vec3(i, j, k); keep(at)) x.push_back(at + Vec3(uniform(random), uniform(random), uniform(random)));
+        if (const Vec3 at = spacing * Vec3(i, j, k); keep(at))
+          x.push_back(at + Vec3(uniform(random), uniform(random), uniform(random)));
   return x;
 }
 
@@ -39,8 +40,9 @@ std::vector<double> piece_volumes(const TriangleMesh& mesh) {
   return volume;
 }
 
-/// The surface found near the surface alone is that of the whole field, but for dust: fluids shaken by 0.3 spacings with bubbles of 1 to 3
-/// spacings in them, at three cells. What is left out are cavities below a tenth of a particle's volume, and few.
+/// The surface found near the surface alone is that of the whole field, but for dust: fluids shaken by 0.3 spacings
+/// with bubbles of 1 to 3 spacings in them, at three cells. What is left out are cavities below a tenth of a particle's
+/// volume, and few.
 TEST(SurfaceRegion, TheSurfaceIsThatOfTheWholeField) {
   const double spacing = 0.03, h = spacing;
   std::size_t n_left_out = 0, n_missing = 0;
@@ -48,7 +50,8 @@ TEST(SurfaceRegion, TheSurfaceIsThatOfTheWholeField) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> place(0.0, 24.0 * spacing), size(1.0 * spacing, 3.0 * spacing);
     std::vector<std::pair<Vec3, double>> bubbles;
-    for (unsigned b = 0; b < seed; ++b) bubbles.emplace_back(Vec3(place(random), place(random), place(random)), size(random));
+    for (unsigned b = 0; b < seed; ++b)
+      bubbles.emplace_back(Vec3(place(random), place(random), place(random)), size(random));
     const auto keep = [&](const Vec3& x) {
       for (const auto& [centre, radius] : bubbles)
         if ((x - centre).norm() < radius) return false;
@@ -64,7 +67,8 @@ TEST(SurfaceRegion, TheSurfaceIsThatOfTheWholeField) {
       const TriangleMesh whole = extract_iso_surface(all, 0.5f), part = extract_iso_surface(near, 0.5f);
       const std::vector<double> all_pieces = piece_volumes(whole), found_pieces = piece_volumes(part);
       std::vector<double> missing;
-      std::set_difference(all_pieces.begin(), all_pieces.end(), found_pieces.begin(), found_pieces.end(), std::back_inserter(missing));
+      std::set_difference(all_pieces.begin(), all_pieces.end(), found_pieces.begin(), found_pieces.end(),
+                          std::back_inserter(missing));
       ASSERT_EQ(found_pieces.size() + missing.size(), all_pieces.size()) << "seed " << seed << " cell " << cell;
       for (const double v : missing) ASSERT_TRUE(v < 0.0 && v > -0.1 * std::pow(spacing, 3)) << v;
       n_missing += missing.size();
@@ -95,7 +99,9 @@ TEST(EstimateSpacing, FindsTheSpacingOfFluids) {
   EXPECT_NEAR(estimate(0.0), 1.0, 0.01);
   EXPECT_NEAR(estimate(0.1), 1.0, 0.01);
   EXPECT_NEAR(estimate(0.25), 1.0, 0.02);
-  EXPECT_NEAR(estimate_spacing(make_fluid(random, 30, spacing, 0.0, [](const Vec3& x) { return x[1] == 0.0; })) / spacing, 1.0, 0.01);
+  EXPECT_NEAR(
+      estimate_spacing(make_fluid(random, 30, spacing, 0.0, [](const Vec3& x) { return x[1] == 0.0; })) / spacing, 1.0,
+      0.01);
 }
 
 TEST(EstimateSpacing, RefusesWhatHasNone) {

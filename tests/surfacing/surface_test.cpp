@@ -137,7 +137,8 @@ TEST(Surface, AttributesFollowTheParticles) {
   for (std::size_t v = 0; v < n; ++v) {
     ASSERT_NEAR((surface.velocity[v] - Vec3f(1.0f, -2.0f, 0.5f)).norm(), 0.0f, 1e-5f);
     ASSERT_NEAR(surface.viscosity[v], 12.5f, 1e-4f);
-    ASSERT_LT((surface.rest[v].cast<double>() - surface.mesh.vertices[v] - Vec3(5.0, 0.0, 0.0)).cwiseAbs().maxCoeff(), spacing);
+    ASSERT_LT((surface.rest[v].cast<double>() - surface.mesh.vertices[v] - Vec3(5.0, 0.0, 0.0)).cwiseAbs().maxCoeff(),
+              spacing);
     // On the surface all particles lie to one side: the average is that of a point less than a spacing further in.
     ASSERT_NEAR(surface.temperature[v], 300.0 + 100.0 * surface.mesh.vertices[v][1], 100.0 * spacing);
   }
@@ -202,7 +203,8 @@ TEST(Surface, RefusesBadInput) {
   EXPECT_THROW(build_surface(make_frame(std::vector<Vec3>(20, Vec3(1, 2, 3))), {}), Error) << "all at one place";
 }
 
-// Loose webs of particles: threads, holes and drops, where smoothing is weak nearly everywhere and volumes are hard to give back.
+// Loose webs of particles: threads, holes and drops, where smoothing is weak nearly everywhere and volumes are hard to
+// give back.
 TEST(Surface, LooseWebsStayAtTheirParticles) {
   double farthest = 0.0;
   for (std::uint32_t seed = 0; seed < 12; ++seed) {

@@ -44,7 +44,8 @@ Vec3 gradient_at(const Cell& f, const Vec3& x) {
   return g;
 }
 
-/// A critical point of f inside the cell, and how many directions lead uphill from it: 1 or 2, as f has no second derivative along an axis.
+/// A critical point of f inside the cell, and how many directions lead uphill from it: 1 or 2, as f has no second
+/// derivative along an axis.
 struct BodySaddle {
   Vec3 x;
   int n_up;
@@ -132,8 +133,11 @@ class Complex {
     for (int k = 0; k < grid.n[2]; ++k)
       for (int j = 0; j < grid.n[1]; ++j)
         for (int i = 0; i < grid.n[0]; ++i)
-          value_[index({i + 1, j + 1, k + 1})] = grid.at(i, j, k) == iso ? static_cast<double>(tie_lift * iso) : static_cast<double>(grid.at(i, j, k)) - static_cast<double>(iso);
-    for (std::size_t i = 0; i < value_.size(); ++i) value_[i] *= distinct(i, value_[i] == static_cast<double>(tie_lift * iso));
+          value_[index({i + 1, j + 1, k + 1})] = grid.at(i, j, k) == iso
+                                                     ? static_cast<double>(tie_lift * iso)
+                                                     : static_cast<double>(grid.at(i, j, k)) - static_cast<double>(iso);
+    for (std::size_t i = 0; i < value_.size(); ++i)
+      value_[i] *= distinct(i, value_[i] == static_cast<double>(tie_lift * iso));
   }
 
   SurfaceTopology topology() {
@@ -168,11 +172,13 @@ class Complex {
     return inside(p) && inside(q) ? -1 : 0;
   }
 
-  /// The face across `axis`: that of the closed face (local maxima at corners, a saddle takes one off) less that of its edges and corners.
+  /// The face across `axis`: that of the closed face (local maxima at corners, a saddle takes one off) less that of its
+  /// edges and corners.
   int visit_face(Parts& parts, const Lattice& p, int axis) const {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
     if (!has_room(p, u) || !has_room(p, v)) return 0;
-    const std::array<Lattice, 4> corner = {p, stepped(p, u), stepped(stepped(p, u), v), stepped(p, v)};  // around the face
+    const std::array<Lattice, 4> corner = {p, stepped(p, u), stepped(stepped(p, u), v),
+                                           stepped(p, v)};  // around the face
     std::array<double, 4> f;
     int euler = 0;
     for (int i = 0; i < 4; ++i) f[i] = value(corner[i]);
@@ -256,7 +262,9 @@ class Complex {
   static bool has_saddle(const std::array<double, 4>& g) {
     return std::min(g[0], g[2]) > std::max(g[1], g[3]) || std::min(g[1], g[3]) > std::max(g[0], g[2]);
   }
-  static double saddle_value(const std::array<double, 4>& g) { return (g[0] * g[2] - g[1] * g[3]) / (g[0] - g[1] + g[2] - g[3]); }
+  static double saddle_value(const std::array<double, 4>& g) {
+    return (g[0] * g[2] - g[1] * g[3]) / (g[0] - g[1] + g[2] - g[3]);
+  }
 
   /// Whether a face has a saddle that is inside, from which f falls into the cell.
   static bool falling_saddle(const Cell& f, int axis, int side) {

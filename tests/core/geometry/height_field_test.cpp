@@ -23,8 +23,8 @@ double hills(double x, double z) {
   return 3.0 + std::sin(x) + 0.5 * std::cos(1.3 * z) + 0.2 * x;
 }
 
-// The volume under bilinear cells cut along either diagonal is that of the mean of two triangles: here against the sum over triangles'
-// corners, which for a solid with vertical walls is exact.
+// The volume under bilinear cells cut along either diagonal is that of the mean of two triangles: here against the sum
+// over triangles' corners, which for a solid with vertical walls is exact.
 TEST(HeightField, SolidIsClosedAndHoldsTheVolumeUnderItsTriangles) {
   const HeightField f = make_field(9, 6, 0.7, hills);
   const double bottom = 0.5;

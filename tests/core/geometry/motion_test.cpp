@@ -11,7 +11,9 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-Mat3 about(const Vec3& axis, double angle) { return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix(); }
+Mat3 about(const Vec3& axis, double angle) {
+  return Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix();
+}
 
 /// A thing that is tipped, lifted and turned round between three keyframes.
 Motion<3> make_tumble(bool smooth) {
@@ -72,8 +74,10 @@ TEST(Motion, DerivativesAreThoseOfTheWay) {
     const auto at = [&](double t) { return pose_at(motion, t).to_world(point); };
     for (const double t : {0.61, 0.93, 1.7, 2.8}) {
       EXPECT_NEAR((twist_at(motion, t).at(at(t)) - (at(t + h) - at(t - h)) / (2.0 * h)).norm(), 0.0, 1e-6);
-      EXPECT_NEAR((acceleration_at(motion, t).at(at(t)) - (at(t + h) - 2.0 * at(t) + at(t - h)) / (h * h)).norm(), 0.0, 1e-5);
-      EXPECT_LE(twist_at(motion, t).at(at(t)).norm(), speed_bound(motion, t, t, (point - motion.pivot).norm()) * (1.0 + 1e-12));
+      EXPECT_NEAR((acceleration_at(motion, t).at(at(t)) - (at(t + h) - 2.0 * at(t) + at(t - h)) / (h * h)).norm(), 0.0,
+                  1e-5);
+      EXPECT_LE(twist_at(motion, t).at(at(t)).norm(),
+                speed_bound(motion, t, t, (point - motion.pivot).norm()) * (1.0 + 1e-12));
     }
   }
 }
@@ -81,7 +85,9 @@ TEST(Motion, DerivativesAreThoseOfTheWay) {
 // A step that runs into a faster stretch knows it.
 TEST(Motion, SpeedBoundLooksAhead) {
   Motion<2> motion;
-  motion.keyframes = {{0.0, Vec<2>(0, 0), Mat<2>::Identity()}, {1.0, Vec<2>(1, 0), Mat<2>::Identity()}, {1.1, Vec<2>(2, 0), Mat<2>::Identity()}};
+  motion.keyframes = {{0.0, Vec<2>(0, 0), Mat<2>::Identity()},
+                      {1.0, Vec<2>(1, 0), Mat<2>::Identity()},
+                      {1.1, Vec<2>(2, 0), Mat<2>::Identity()}};
   EXPECT_NEAR(speed_bound(motion, 0.2, 0.9, 1.0), 1.0, 1e-12);
   EXPECT_NEAR(speed_bound(motion, 0.2, 1.05, 1.0), 10.0, 1e-9);
   motion.smooth = true;

@@ -24,7 +24,8 @@ TEST(SweepSphere, HitsTheFaceAtTheRightTime) {
   EXPECT_NEAR(behind->normal[2], -1.0, 1e-14);
 }
 
-// [P 6-13] looks only at the moment the sphere meets the plane, and at feet of perpendiculars inside an edge: it misses both of these.
+// [P 6-13] looks only at the moment the sphere meets the plane, and at feet of perpendiculars inside an edge: it misses
+// both of these.
 TEST(SweepSphere, GrazesAnEdgeAfterItTouchedThePlane) {
   // Slides along, just above the plane's level, and meets the edge y = 0 from outside.
   const auto contact = sweep_sphere<3>(Vec3(0.5, -1.0, 0.05), Vec3(0, 2.0, 0), 0.1, triangle);
@@ -74,7 +75,8 @@ TEST(SweepSphere, AgreesWithMarchingOnRandomTriangles) {
       ASSERT_GT(nearest, radius * (1.0 - 1e-9)) << "missed a hit, trial " << trial;
     } else {
       const Vec3 at = centre + contact->time * displacement;
-      ASSERT_NEAR((at - closest_point<3>(at, t)).norm(), radius, 1e-9) << "not touching at the contact, trial " << trial;
+      ASSERT_NEAR((at - closest_point<3>(at, t)).norm(), radius, 1e-9)
+          << "not touching at the contact, trial " << trial;
       ++n_hits;
     }
   }
@@ -112,8 +114,8 @@ std::vector<Simplex<Dim>> make_simplices(std::mt19937& random, std::size_t n, co
 
 /// The first contact of all simplices but one, one by one.
 template <int Dim>
-std::optional<FirstContact<Dim>> sweep_all(const std::vector<Simplex<Dim>>& simplices, const Vec<Dim>& at, const Vec<Dim>& way, double radius,
-                                           std::uint32_t except) {
+std::optional<FirstContact<Dim>> sweep_all(const std::vector<Simplex<Dim>>& simplices, const Vec<Dim>& at,
+                                           const Vec<Dim>& way, double radius, std::uint32_t except) {
   std::optional<FirstContact<Dim>> first;
   for (std::uint32_t k = 0; k < simplices.size(); ++k) {
     if (k == except) continue;
@@ -203,7 +205,8 @@ double mean_nodes_visited(int n_cells) {
 
 TEST(SimplexBvh, VisitsGrowWithTheLogOfTheTriangles) {
   // 200 triangles to half a million: 8 of them a node, so that each step, 16 times as many, is a level and a third.
-  const double visits[] = {mean_nodes_visited(10), mean_nodes_visited(40), mean_nodes_visited(160), mean_nodes_visited(500)};
+  const double visits[] = {mean_nodes_visited(10), mean_nodes_visited(40), mean_nodes_visited(160),
+                           mean_nodes_visited(500)};
   for (int k = 0; k < 3; ++k) EXPECT_LT(visits[k + 1] - visits[k], 2.0) << k;
   EXPECT_LT(visits[3], 12.0);
 }

@@ -9,7 +9,8 @@ namespace {
 
 Colliders<3> floor_with(const ContactResponse& response) {
   Colliders<3> colliders;
-  colliders.add({{{Vec3(-9, 0, -9), Vec3(-9, 0, 9), Vec3(9, 0, 9)}, {Vec3(-9, 0, -9), Vec3(9, 0, 9), Vec3(9, 0, -9)}}, response});
+  colliders.add(
+      {{{Vec3(-9, 0, -9), Vec3(-9, 0, 9), Vec3(9, 0, 9)}, {Vec3(-9, 0, -9), Vec3(9, 0, 9), Vec3(9, 0, -9)}}, response});
   return colliders;
 }
 

@@ -41,7 +41,8 @@ TEST(Enthalpy, SlopeIsThatOfTemperature) {
     const HeatProperties heat = wax(hot);
     for (const double h : {-3e4, 1e4, 1.5e5, 4e5}) {
       const double step = 10.0;
-      const double difference = (temperature_at_enthalpy(heat, h + step) - temperature_at_enthalpy(heat, h - step)) / (2.0 * step);
+      const double difference =
+          (temperature_at_enthalpy(heat, h + step) - temperature_at_enthalpy(heat, h - step)) / (2.0 * step);
       EXPECT_NEAR(temperature_slope(heat, h), difference, 1e-9 * (1.0 / 2000.0) + 1e-14);
     }
   }

@@ -28,7 +28,9 @@ struct Sums {
   double energy = 0.0;
 };
 
-double cross(const Vec<2>& a, const Vec<2>& b) { return a[0] * b[1] - a[1] * b[0]; }
+double cross(const Vec<2>& a, const Vec<2>& b) {
+  return a[0] * b[1] - a[1] * b[0];
+}
 
 Sums sum_up(const Solver<2, double>& solver) {
   Sums sums;
@@ -37,7 +39,8 @@ Sums sum_up(const Solver<2, double>& solver) {
     sums.angular += m * cross(x, v);
     sums.energy += 0.5 * m * v.squaredNorm();
   };
-  for (std::size_t i = 0; i < solver.particles().size(); ++i) add(solver.mass(i), solver.particles().position[i], solver.particles().velocity[i]);
+  for (std::size_t i = 0; i < solver.particles().size(); ++i)
+    add(solver.mass(i), solver.particles().position[i], solver.particles().velocity[i]);
   for (const auto& placed : solver.colliders().placed()) {
     if (!placed.body) continue;
     const BodyState<2>& state = placed.body->state;
@@ -49,7 +52,8 @@ Sums sum_up(const Solver<2, double>& solver) {
 }
 
 /// A body flies into a drop of viscous fluid, off its middle, free of everything else.
-Solver<2, double> make_blow(double density_ratio, double speed, double viscosity, const Solver<2, double>* from = nullptr) {
+Solver<2, double> make_blow(double density_ratio, double speed, double viscosity,
+                            const Solver<2, double>* from = nullptr) {
   constexpr double spacing = 0.05;
   auto parameters = make_parameters<2>(spacing, 60.0);
   parameters.artificial_viscosity = 0.3;
@@ -65,13 +69,15 @@ Solver<2, double> make_blow(double density_ratio, double speed, double viscosity
     drop = from->particles();
     colliders.set_body_states(from->colliders().body_states());
   }
-  Solver<2, double> solver(parameters, {viscosity > 0.0 ? newtonian_material(density, viscosity) : inviscid_material(density)}, std::move(colliders),
-                           std::move(drop));
+  Solver<2, double> solver(parameters,
+                           {viscosity > 0.0 ? newtonian_material(density, viscosity) : inviscid_material(density)},
+                           std::move(colliders), std::move(drop));
   solver.prepare();
   return solver;
 }
 
-// Body and fluid together keep their momentum to rounding, light bodies and heavy, where walls push and where the guard is hit.
+// Body and fluid together keep their momentum to rounding, light bodies and heavy, where walls push and where the guard
+// is hit.
 TEST(FloatingBody, FluidAndBodyTogetherKeepTheirMomentum) {
   for (const double ratio : {0.1, 1.0, 8.0})
     for (const double speed : {3.0, 30.0})
@@ -86,7 +92,9 @@ TEST(FloatingBody, FluidAndBodyTogetherKeepTheirMomentum) {
         EXPECT_LT(after.energy, before.energy) << "energy from nowhere";
         EXPECT_LT(solver.colliders().placed()[0].body->state.velocity[0], 0.95 * speed) << "it was pushed back";
         for (const Vec<2>& x : solver.particles().position)
-          EXPECT_GT((x - solver.colliders().placed()[0].body->state.centre).norm(), 0.2 * std::cos(std::numbers::pi / 24)) << "inside the body";
+          EXPECT_GT((x - solver.colliders().placed()[0].body->state.centre).norm(),
+                    0.2 * std::cos(std::numbers::pi / 24))
+              << "inside the body";
       }
 }
 
@@ -111,7 +119,8 @@ TEST(FloatingBody, ResumeFromStateAloneIsExact) {
 }
 
 /// A ball or raft in a tank, left alone till it floats.
-void test_floating(std::vector<Simplex<2>> facets, double area, double ratio, double expected_centre_depth, double start_y) {
+void test_floating(std::vector<Simplex<2>> facets, double area, double ratio, double expected_centre_depth,
+                   double start_y) {
   constexpr double spacing = 0.025, width = 1.2, depth = 0.5, g = 9.81;
   auto parameters = make_parameters<2>(spacing, 10.0 * std::sqrt(2.0 * g * depth));
   parameters.smoothing_length = 1.3 * spacing;
@@ -122,9 +131,9 @@ void test_floating(std::vector<Simplex<2>> facets, double area, double ratio, do
   Obstacle<2> body = make_body(facets, ratio * density * area);
   body.response.friction = 1.0;
   const double reach = 0.21;
-  Particles<2> water = make_lattice<2>({Vec<2>(0, 0), Vec<2>(width, depth)}, spacing, density, 0.0, [&](const Vec<2>& x) {
-    return (x - Vec<2>(0.5 * width, start_y)).cwiseAbs().maxCoeff() > reach;
-  });
+  Particles<2> water = make_lattice<2>(
+      {Vec<2>(0, 0), Vec<2>(width, depth)}, spacing, density, 0.0,
+      [&](const Vec<2>& x) { return (x - Vec<2>(0.5 * width, start_y)).cwiseAbs().maxCoeff() > reach; });
   const double volume = static_cast<double>(water.size()) * spacing * spacing;
   Obstacle<2> tank;
   tank.wall = tank.closed = true;

@@ -100,7 +100,8 @@ TEST(FreeSurface, BallsAreBalls) {
 // What docs/decisions/0011 says of what is thinner than the kernel.
 TEST(FreeSurface, ThinThingsHaveSome) {
   const Box<3> box = box_of<3>(Vec3::Zero(), Vec3(0.1, 0.1, 0.01));
-  EXPECT_NEAR(total_area(make_solver<3>(make_block<3>(box, dx, density), sideways<3>(box))) / (0.1 * 0.1), 1.0, 0.01) << "once, not twice";
+  EXPECT_NEAR(total_area(make_solver<3>(make_block<3>(box, dx, density), sideways<3>(box))) / (0.1 * 0.1), 1.0, 0.01)
+      << "once, not twice";
   Particles<3> lone;
   add_particle<3>(lone, Vec3::Zero(), Vec3::Zero(), density);
   const double ball = std::numbers::pi * std::pow(6.0 / std::numbers::pi, 2.0 / 3.0) * dx * dx;

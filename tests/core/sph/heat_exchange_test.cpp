@@ -29,7 +29,8 @@ double exchanged(const SurfaceExchange& exchange, double resistance, double shar
 }
 
 TEST(HeatExchange, BackwardEulerHoldsForAnyStepAndOnThePlateau) {
-  const SurfaceExchange exchange{.convection = 20.0, .emissivity = 0.9, .ambient = 290.0, .source_conductance = 3.0, .source_input = 900.0};
+  const SurfaceExchange exchange{
+      .convection = 20.0, .emissivity = 0.9, .ambient = 290.0, .source_conductance = 3.0, .source_input = 900.0};
   for (const double target : {-5e4, 10.0, 1e5, 1.99999e5, 4e5, 2e6})
     for (const double share : {1e-9, 1e-3, 1.0, 1e6})
       for (const double resistance : {0.0, 0.01, 10.0}) {
@@ -134,6 +135,56 @@ TEST(HeatExchange, GivenPowerArrivesWholeAndOnlyWhileItBurns) {
     if (p.position[i][1] < 0.04) {
       EXPECT_NEAR(p.temperature[i], 300.0, 1e-3) << "far from the lamp";
     }
+}
+
+// What a vent drives has a free surface too, in the lamp's light, and takes nothing up.
+TEST(HeatExchange, GivenPowerArrivesWholeBesideAVent) {
+  auto parameters = still_parameters();
+  parameters.ambient.reset();
+  Emitter<3> vent;
+  vent.position = Vec3(0.04, 0.15, 0.04);
+  vent.direction = Vec3(0, 1, 0);
+  vent.radius = 0.02;
+  vent.flow_rate = 1e-4;
+  vent.end = 1.0;
+  vent.temperature = 300.0;
+  parameters.emitters = {vent};
+  HeatSource<3> lamp;
+  lamp.position = Vec3(0.04, 0.12, 0.04);
+  lamp.radius = 0.06;
+  lamp.power = 7.0;
+  parameters.heat_sources = {lamp};
+  Material m = warm_material();
+  m.heat->emissivity = 0.0;
+  Solver<3, float> solver(parameters, {m}, {}, warm_block(300.0));
+  solver.prepare();
+  const HeatLedger passed = run(solver, 300, 1e-3);
+  EXPECT_GT(solver.particles().size(), 520u) << "it pours";
+  EXPECT_NEAR(passed.from_sources, 7.0 * 0.3, 1e-9);
+}
+
+// Fluid at rest, and a lid that comes down on it: what it covers is no free surface any more.
+TEST(HeatExchange, ALidThatComesDownCoversTheSurface) {
+  Obstacle<3> lid;
+  lid.wall = true;
+  lid.temperature = 290.0;
+  for (const auto& [a, b] :
+       {std::pair(Vec3(-1, 0.12, -1), Vec3(1, 0.12, -1)), std::pair(Vec3(1, 0.12, 1), Vec3(-1, 0.12, 1))})
+    lid.facets.push_back({a, b, Vec3(-a[0], 0.12, -a[2])});
+  lid.motion.velocity = Vec3(0.0, -0.03, 0.0);
+  Colliders<3> colliders;
+  colliders.add(std::move(lid));
+  Solver<3, float> solver(still_parameters(), {warm_material()}, std::move(colliders), warm_block(335.0));
+  const auto area = [&] {
+    return std::accumulate(solver.free_surface_area().begin(), solver.free_surface_area().end(), 0.0);
+  };
+  solver.prepare();
+  const double open = area();
+  run(solver, 1000, 1e-3);
+  const double covered = area();
+  EXPECT_LT(covered, 0.95 * open);
+  solver.prepare(1.0);
+  EXPECT_NEAR(covered, area(), 0.02 * open);
 }
 
 TEST(HeatExchange, HeatThroughWallsIsInTheLedger) {

@@ -29,16 +29,23 @@ void expect_normalised() {
   for (const KernelType type : all_kernels) {
     for (const double h : {0.01, 1.0, 30.0}) {
       const Kernel<Dim> kernel(h, type);
-      EXPECT_NEAR(integrate(kernel), 1.0, 1e-6) << "kernel " << static_cast<int>(type) << " in " << Dim << "D, h = " << h;
+      EXPECT_NEAR(integrate(kernel), 1.0, 1e-6)
+          << "kernel " << static_cast<int>(type) << " in " << Dim << "D, h = " << h;
       EXPECT_EQ(kernel.value(kernel.support_radius() * 1.0000001), 0.0);
     }
   }
 }
 
 // Fails with [S]'s 120/h in 1D and with the rounded 3/(359 pi h^3) in 3D (6e-3 off).
-TEST(Kernel, IntegratesToOneIn1D) { expect_normalised<1>(); }
-TEST(Kernel, IntegratesToOneIn2D) { expect_normalised<2>(); }
-TEST(Kernel, IntegratesToOneIn3D) { expect_normalised<3>(); }
+TEST(Kernel, IntegratesToOneIn1D) {
+  expect_normalised<1>();
+}
+TEST(Kernel, IntegratesToOneIn2D) {
+  expect_normalised<2>();
+}
+TEST(Kernel, IntegratesToOneIn3D) {
+  expect_normalised<3>();
+}
 
 TEST(Kernel, DerivativeMatchesFiniteDifferences) {
   for (const KernelType type : all_kernels) {

@@ -16,7 +16,9 @@ constexpr double pi = std::numbers::pi;
 /// A regular polygon around the origin, wound so that its outside is out.
 std::vector<Simplex<2>> polygon(int n, double radius) {
   std::vector<Simplex<2>> segments;
-  const auto corner = [&](int k) { return Vec<2>(radius * std::cos(2 * pi * k / n), radius * std::sin(2 * pi * k / n)); };
+  const auto corner = [&](int k) {
+    return Vec<2>(radius * std::cos(2 * pi * k / n), radius * std::sin(2 * pi * k / n));
+  };
   for (int k = 0; k < n; ++k) segments.push_back({corner(k), corner(k + 1)});
   return segments;
 }
@@ -24,11 +26,14 @@ std::vector<Simplex<2>> polygon(int n, double radius) {
 /// A prism along z, with lids: a drum.
 std::vector<Simplex<3>> prism(int n, double radius, double half_length) {
   std::vector<Simplex<3>> facets;
-  const auto corner = [&](int k, double z) { return Vec3(radius * std::cos(2 * pi * k / n), radius * std::sin(2 * pi * k / n), z); };
+  const auto corner = [&](int k, double z) {
+    return Vec3(radius * std::cos(2 * pi * k / n), radius * std::sin(2 * pi * k / n), z);
+  };
   for (int k = 0; k < n; ++k) {
     facets.push_back({corner(k, -half_length), corner(k + 1, -half_length), corner(k + 1, half_length)});
     facets.push_back({corner(k, -half_length), corner(k + 1, half_length), corner(k, half_length)});
-    for (const double z : {-half_length, half_length}) facets.push_back({Vec3(0, 0, z), corner(k, z), corner(k + 1, z)});
+    for (const double z : {-half_length, half_length})
+      facets.push_back({Vec3(0, 0, z), corner(k, z), corner(k + 1, z)});
   }
   return facets;
 }
@@ -60,12 +65,41 @@ void advance(Colliders<3>& colliders, double radius, double time, double dt, std
   colliders.end_step();
 }
 
-// A drum, turning about an axis of its own that it is carried along, with a paddle in it fixed to the world: the rim passes the dust by up
-// to twelve radii a step.
+// A plug that has vanished neither falls on nor bounds the step.
+TEST(MovingColliders, WhatHasVanishedMovesNoMore) {
+  for (const bool rigid : {false, true}) {
+    Obstacle<3> plug;
+    plug.facets = prism(8, 1.0, 1.0);
+    plug.until = 0.5;
+    if (rigid)
+      plug.mass = 10.0;
+    else
+      plug.motion.velocity = Vec3(0, -3, 0);
+    Colliders<3> colliders;
+    colliders.add(std::move(plug));
+    colliders.place_at(0.0);
+    constexpr double dt = 0.1;
+    for (int k = 0; k < 10; ++k) {
+      const double time = k * dt;
+      if (k == 4) {
+        EXPECT_GT(colliders.speed_bound(time, time + dt), 2.9);
+      }
+      colliders.kick_bodies(Vec3(0, -9.81, 0), dt);
+      colliders.begin_step(time, dt);
+      EXPECT_EQ(colliders.step_way() > 0.0, k < 5) << k;
+      colliders.end_step();
+    }
+    EXPECT_EQ(colliders.speed_bound(1.0, 1.1), 0.0);
+  }
+}
+
+// A drum, turning about an axis of its own that it is carried along, with a paddle in it fixed to the world: the rim
+// passes the dust by up to twelve radii a step.
 TEST(MovingColliders, ADrumAndAPaddleHoldDust) {
   constexpr double radius = 0.02, dt = 0.01;
   for (const bool wall : {false, true})
-    for (const ContactResponse response : {ContactResponse{0.0, 0.0}, ContactResponse{1.0, 0.0}, ContactResponse{0.5, 0.8}})
+    for (const ContactResponse response :
+         {ContactResponse{0.0, 0.0}, ContactResponse{1.0, 0.0}, ContactResponse{0.5, 0.8}})
       for (const double spin : {1.0, 25.0}) {
         Obstacle<3> drum;
         drum.facets = prism(24, 1.0, 0.5);
@@ -74,7 +108,8 @@ TEST(MovingColliders, ADrumAndAPaddleHoldDust) {
         drum.motion.spin = to_skew(Vec3(0.1 * spin, 0.0, spin));
         drum.motion.velocity = Vec3(0.3, 0.0, 0.1);
         Obstacle<3> paddle;
-        paddle.facets = {{Vec3(-0.5, -0.1, -9), Vec3(0.5, 0.1, -9), Vec3(0.5, 0.1, 9)}, {Vec3(-0.5, -0.1, -9), Vec3(0.5, 0.1, 9), Vec3(-0.5, -0.1, 9)}};
+        paddle.facets = {{Vec3(-0.5, -0.1, -9), Vec3(0.5, 0.1, -9), Vec3(0.5, 0.1, 9)},
+                         {Vec3(-0.5, -0.1, -9), Vec3(0.5, 0.1, 9), Vec3(-0.5, -0.1, 9)}};
         paddle.response = response;
         paddle.motion.velocity = drum.motion.velocity;
         Colliders<3> colliders;
@@ -94,7 +129,8 @@ TEST(MovingColliders, ADrumAndAPaddleHoldDust) {
         };
         for (int step = 0; step < 300; ++step) {
           advance(colliders, radius, step * dt, dt, dust);
-          ASSERT_EQ(lost(), 0) << "step " << step << " spin " << spin << " friction " << response.friction << " wall " << wall;
+          ASSERT_EQ(lost(), 0) << "step " << step << " spin " << spin << " friction " << response.friction << " wall "
+                               << wall;
         }
       }
 }
@@ -120,18 +156,20 @@ TEST(MovingColliders, WhatSticksTurnsWithIt) {
     }
     const Vec<2> local = colliders.placed()[0].begin.to_rest(x);
     double nearest = 1.0;
-    for (const auto& segment : drum.facets) nearest = std::min(nearest, (local - closest_point<2>(local, segment)).norm());
+    for (const auto& segment : drum.facets)
+      nearest = std::min(nearest, (local - closest_point<2>(local, segment)).norm());
     EXPECT_NEAR(nearest, radius, 1e-9);
   }
 }
 
-// A press comes down on dust in a bucket to a gap of one and a half radii, six radii a step: dust is squeezed to its very sides but stays
-// between.
+// A press comes down on dust in a bucket to a gap of one and a half radii, six radii a step: dust is squeezed to its
+// very sides but stays between.
 TEST(MovingColliders, APressSqueezesDustFlat) {
   constexpr double radius = 0.02, dt = 0.01;
   for (const bool smooth : {false, true}) {
     Obstacle<3> bucket;
-    bucket.facets = {{Vec3(-9, 0, -9), Vec3(-9, 0, 9), Vec3(9, 0, 9)}, {Vec3(-9, 0, -9), Vec3(9, 0, 9), Vec3(9, 0, -9)}};
+    bucket.facets = {{Vec3(-9, 0, -9), Vec3(-9, 0, 9), Vec3(9, 0, 9)},
+                     {Vec3(-9, 0, -9), Vec3(9, 0, 9), Vec3(9, 0, -9)}};
     Obstacle<3> press = bucket;
     press.motion.smooth = smooth;
     press.motion.keyframes = {{0.0, Vec3(0, 1, 0), Mat3::Identity()},

@@ -44,11 +44,21 @@ void expect_all_pairs(std::vector<Vec<Dim>> points, double radius) {
   }
 }
 
-TEST(Neighbours, MatchesBruteForceIn1D) { expect_all_pairs<1>(random_points<1>(300, 1), 0.05); }
-TEST(Neighbours, MatchesBruteForceIn2D) { expect_all_pairs<2>(random_points<2>(800, 2), 0.17); }
-TEST(Neighbours, MatchesBruteForceIn3D) { expect_all_pairs<3>(random_points<3>(1500, 3), 0.31); }
-TEST(Neighbours, OneParticleHasNone) { expect_all_pairs<3>({Vec3(1.0, 2.0, 3.0)}, 0.5); }
-TEST(Neighbours, CoincidentParticlesSeeEachOther) { expect_all_pairs<3>({Vec3(1, 2, 3), Vec3(1, 2, 3), Vec3(1, 2, 3.1)}, 0.5); }
+TEST(Neighbours, MatchesBruteForceIn1D) {
+  expect_all_pairs<1>(random_points<1>(300, 1), 0.05);
+}
+TEST(Neighbours, MatchesBruteForceIn2D) {
+  expect_all_pairs<2>(random_points<2>(800, 2), 0.17);
+}
+TEST(Neighbours, MatchesBruteForceIn3D) {
+  expect_all_pairs<3>(random_points<3>(1500, 3), 0.31);
+}
+TEST(Neighbours, OneParticleHasNone) {
+  expect_all_pairs<3>({Vec3(1.0, 2.0, 3.0)}, 0.5);
+}
+TEST(Neighbours, CoincidentParticlesSeeEachOther) {
+  expect_all_pairs<3>({Vec3(1, 2, 3), Vec3(1, 2, 3), Vec3(1, 2, 3.1)}, 0.5);
+}
 
 /// More of them in reach than a byte can count.
 TEST(Neighbours, CrowdsAreSeenWhole) {

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 namespace smelt {
@@ -68,7 +69,8 @@ std::vector<std::int64_t> imbalance(const Solver<Dim, Real>& solver) {
   const ParticleAccount& account = solver.account();
   std::vector<std::int64_t> left = account.initial;
   for (std::size_t m = 0; m < left.size(); ++m) left[m] -= account.removed[m];
-  for (std::size_t e = 0; e < account.entered.size(); ++e) left[solver.parameters().emitters[e].material] += account.entered[e];
+  for (std::size_t e = 0; e < account.entered.size(); ++e)
+    left[solver.parameters().emitters[e].material] += account.entered[e];
   for (std::size_t i = 0; i < solver.particles().size(); ++i)
     --left[solver.particles().material.empty() ? 0 : solver.particles().material[i]];
   return left;
@@ -137,16 +139,19 @@ TEST(Emitter, FreeJetKeepsItsVelocityAndDensity) {
   run(solver, 0.0, 1.0, 0.05, [&](const auto& s, double) {
     for (std::size_t i = 0; i < s.particles().size(); ++i) {
       worst_density = std::max(worst_density, std::abs(s.particles().density[i] / 1000.0 - 1.0));
-      worst_velocity = std::max(worst_velocity, (s.particles().velocity[i] - Vec3(0.0, s.particles().velocity[i][1], 0.0)).norm());
+      worst_velocity =
+          std::max(worst_velocity, (s.particles().velocity[i] - Vec3(0.0, s.particles().velocity[i][1], 0.0)).norm());
     }
   });
   const auto& p = solver.particles();
-  const EmitterLayers<3> layers = compute_emitter_layers<3>(parameters.emitters[0], parameters.particle_volume, 2.4 * spacing);
+  const EmitterLayers<3> layers =
+      compute_emitter_layers<3>(parameters.emitters[0], parameters.particle_volume, 2.4 * spacing);
   EXPECT_EQ(static_cast<std::int64_t>(p.size()), layers.n_particles);
   EXPECT_EQ(imbalance(solver), std::vector<std::int64_t>{0});
   EXPECT_LT(worst_density, 1e-4);
   EXPECT_LT(worst_velocity, 1e-3 * layers.speed);
-  EXPECT_EQ(std::count(p.driven.begin(), p.driven.end(), 0), static_cast<std::ptrdiff_t>(p.size())) << "all have left the duct";
+  EXPECT_EQ(std::count(p.driven.begin(), p.driven.end(), 0), static_cast<std::ptrdiff_t>(p.size()))
+      << "all have left the duct";
   for (std::size_t i = 0; i < p.size(); ++i) ASSERT_NEAR(p.velocity[i][1] / -layers.speed, 1.0, 1e-3);
 }
 
@@ -175,7 +180,8 @@ struct Vat {
   double exit_height() const { return 3.0 * spacing; }
 };
 
-/// Between two slippery walls a vent pushes up a column of fluid: it moves as one, and its pressure is hydrostatic while it grows.
+/// Between two slippery walls a vent pushes up a column of fluid: it moves as one, and its pressure is hydrostatic
+/// while it grows.
 struct Column {
   double pressure_error = 0.0, rms_error = 0.0;  ///< over rho g H
   double velocity_error = 0.0;                   ///< over the speed
@@ -207,7 +213,8 @@ Column push_up_a_column() {
     const auto& p = s.particles();
     const double top = time - spacing, per_head = 1.0 / (1000.0 * 9.81 * time);
     for (std::size_t i = 0; i < p.size(); ++i) {
-      if (top - p.position[i][1] < 3.0 * spacing) continue;  // at the free surface the column's top is right to half a spacing only
+      if (top - p.position[i][1] < 3.0 * spacing)
+        continue;  // at the free surface the column's top is right to half a spacing only
       const double pressure = 3600.0 * (p.density[i] - 1000.0);
       const double error = std::abs(pressure - 1000.0 * 9.81 * (top - p.position[i][1])) * per_head;
       if (p.driven[i] == 0) {
@@ -246,7 +253,8 @@ TEST(Emitter, FillsAVatWithoutShocks) {
     const auto& p = s.particles();
     worst = std::max(worst, density_error_at_vent(p, vat));
     for (std::size_t i = 0; i < p.size(); ++i)
-      if (p.driven[i] == 0 && p.position[i][1] < vat.exit_height() - spacing) across_duct = std::min(across_duct, std::abs(p.position[i][0]));
+      if (p.driven[i] == 0 && p.position[i][1] < vat.exit_height() - spacing)
+        across_duct = std::min(across_duct, std::abs(p.position[i][0]));
   });
   for (const auto& x : solver.particles().position) highest = std::max(highest, x[1]);
   EXPECT_LT(worst, 0.03);
@@ -326,6 +334,18 @@ TEST(Outflow, CountsWhatItTakesOfEachMaterial) {
   EXPECT_EQ(imbalance(solver), (std::vector<std::int64_t>{0, 0}));
   std::set<std::int32_t> ids(solver.particles().id.begin(), solver.particles().id.end());
   EXPECT_EQ(ids, (std::set<std::int32_t>{0, 1, 2, 3, 4, 5}));
+}
+
+TEST(Emitter, PoursForEverWithoutAnEnd) {
+  Emitter<3> emitter;
+  emitter.radius = 0.05;
+  emitter.flow_rate = 1e-3;
+  emitter.end = std::numeric_limits<double>::infinity();
+  const auto layers = compute_emitter_layers<3>(emitter, 1e-6, 0.024);
+  EXPECT_NEAR(static_cast<double>(count_entered(emitter, layers, 100.0)), 1e5,
+              static_cast<double>(layers.sites.size()));
+  emitter.end = 1e20;  // more particles than can be counted
+  EXPECT_GT(compute_emitter_layers<3>(emitter, 1e-6, 0.024).n_particles, std::int64_t{1} << 60);
 }
 
 // Water behind a gate: it stays while the gate stands, and flows when it has gone.

@@ -37,7 +37,8 @@ struct Pair {
       record[Fields::volume_at] = Real(0.5);
       record[Fields::density_at] = static_cast<Real>(2 + k);
       record[Fields::specific_pressure_at] = static_cast<Real>(k);
-      for (int entry = 0; entry < Dim * Dim; ++entry) record[Fields::stress_at + entry] = static_cast<Real>(1 + entry + k);
+      for (int entry = 0; entry < Dim * Dim; ++entry)
+        record[Fields::stress_at + entry] = static_cast<Real>(1 + entry + k);
     }
     const std::vector<Vec<Dim>> position = {Vec<Dim>::Zero(), Vec<Dim>::Unit(0)};
     build_neighbour_lists<Dim>(position, 2.0, 2.0, pair_lanes<Real>, lists);
@@ -78,7 +79,8 @@ void expect_kernels_agree(double tolerance) {
       EXPECT_NEAR(sums[0].heat, 2.0 * 0.5 * -2.0 * pair.f * balance * 1.25 * (2.0 * 0.6 / 1.6), tolerance * heat_scale);
       EXPECT_NEAR(sums[0].moment_trace, -0.5 * pair.r * pair.r * pair.f * balance / Dim, tolerance * heat_scale);
       EXPECT_NEAR(sums[0].heat_imbalance[0], 0.5 * pair.f * x * (1.0 + 0.3 * x), tolerance * heat_scale);
-      EXPECT_NEAR(sums[0].xsph[0], 0.5 * 0.5 * 3.0 * (1.0 / 2.0 + 1.0 / 3.0) * 3.0 * pair.w, tolerance * scalar.value(0.0));
+      EXPECT_NEAR(sums[0].xsph[0], 0.5 * 0.5 * 3.0 * (1.0 / 2.0 + 1.0 / 3.0) * 3.0 * pair.w,
+                  tolerance * scalar.value(0.0));
 
       std::array<Real, Dim> acceleration[2];
       terms.stress = false;
@@ -152,11 +154,13 @@ struct Block {
     std::vector<std::int32_t> id;
     for (int k = 0; k < 9 * 9 * 9; ++k) {
       id.push_back(k);
-      position.push_back(Vec3(k % 9, k / 9 % 9, k / 81) + 0.3 * Vec3(uniform(random), uniform(random), uniform(random)));
+      position.push_back(Vec3(k % 9, k / 9 % 9, k / 81) +
+                         0.3 * Vec3(uniform(random), uniform(random), uniform(random)));
     }
     const double reach = 2.0 * h * 2.0;
     std::vector<Vec3> sorted;
-    for (const std::int32_t k : compute_cell_order<3>(position, id, reach)) sorted.push_back(position[static_cast<std::size_t>(k)]);
+    for (const std::int32_t k : compute_cell_order<3>(position, id, reach))
+      sorted.push_back(position[static_cast<std::size_t>(k)]);
     build_neighbour_lists<3>(sorted, reach, reach, pair_lanes<float>, lists);
     n = sorted.size();
     using Fields = PairFields<3, float>;

@@ -12,7 +12,8 @@
 
 namespace smelt {
 
-inline constexpr KernelType all_kernels[] = {KernelType::cubic_spline, KernelType::quintic_spline, KernelType::quadratic};
+inline constexpr KernelType all_kernels[] = {KernelType::cubic_spline, KernelType::quintic_spline,
+                                             KernelType::quadratic};
 
 /// Adds int f over [begin, end] to `sum`: composite Gauss-Legendre quadrature, three points a panel.
 template <typename Sum, typename F>

@@ -1,4 +1,5 @@
 #include "core/sph/rheology.h"
+
 #include "core/sph/stress_update.h"
 
 #include <fmt/format.h>
@@ -12,7 +13,9 @@ namespace smelt {
 namespace {
 
 /// [P 6-1], dimensionless: tau0 = K = gdot1 = 1.
-FlowCurve dimensionless(double jump, double index) { return {1.0, 1.0, index, jump + 1.0}; }
+FlowCurve dimensionless(double jump, double index) {
+  return {1.0, 1.0, index, jump + 1.0};
+}
 
 TEST(Rheology, ReproducesThePublishedCurve) {
   for (const double jump : {15.0, 150.0, 1500.0}) {
@@ -28,7 +31,8 @@ TEST(Rheology, ReproducesThePublishedCurve) {
 // A plain (1 - exp)/gdot gives 0/0 or noise here; the law's limit is J + 1.
 TEST(Rheology, ViscosityAtRestIsFiniteAndRight) {
   const FlowCurve curve = dimensionless(150.0, 1.0);
-  for (const double g : {0.0, 1e-300, 1e-20, 1e-14, 1e-12, 1e-9}) EXPECT_NEAR(viscosity(curve, g), 151.0, 151.0 * 1e-6) << g;
+  for (const double g : {0.0, 1e-300, 1e-20, 1e-14, 1e-12, 1e-9})
+    EXPECT_NEAR(viscosity(curve, g), 151.0, 151.0 * 1e-6) << g;
 }
 
 TEST(Rheology, JumpNumberGivesRestViscosity) {
@@ -70,8 +74,8 @@ TEST(RelaxedShearRate, SolvesItsEquationOverManyDecades) {
               const double y = relaxed_shear_rate(curve, modulus_dt, trial, 1.0);
               ASSERT_GE(y, 0.0);
               const double residual = std::abs(shear_stress(curve, y) + modulus_dt * y - trial);
-              EXPECT_LE(residual, 2e-9 * trial) << fmt::format("tau0 {} K {} n {} eta0 {} Gdt {} trial {}: y {}", tau0, consistency, index,
-                                                               rest, modulus_dt, trial, y);
+              EXPECT_LE(residual, 2e-9 * trial) << fmt::format("tau0 {} K {} n {} eta0 {} Gdt {} trial {}: y {}", tau0,
+                                                               consistency, index, rest, modulus_dt, trial, y);
               ++n_cases;
             }
           }
@@ -95,8 +99,8 @@ TEST(StressUpdate, InstantStressIsTheLaw) {
   EXPECT_NEAR(state.viscosity, viscosity(curve, 0.8), 1e-12);
 }
 
-// What makes the relaxed stress legitimate: in steady shear it ends on the flow curve itself. The material turns as it shears, which
-// leaves normal stresses of the order of the elastic strain tau/G.
+// What makes the relaxed stress legitimate: in steady shear it ends on the flow curve itself. The material turns as it
+// shears, which leaves normal stresses of the order of the elastic strain tau/G.
 TEST(StressUpdate, RelaxedStressEndsOnTheFlowCurve) {
   const FlowCurve curve = dimensionless(150.0, 0.5);
   for (const double rate : {0.01, 0.3, 4.0}) {
@@ -131,7 +135,8 @@ TEST(StressUpdate, StressTurnsWithTheMaterialAndKeepsItsSize) {
   EXPECT_NEAR(state.stress[3], 0.0, 1e-5);
 }
 
-/// Solids, liquids and what is between them, some of it turning, with powers that have fast paths and one that has none.
+/// Solids, liquids and what is between them, some of it turning, with powers that have fast paths and one that has
+/// none.
 StressBlock<3> make_mixed_block() {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);

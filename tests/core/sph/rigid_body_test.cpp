@@ -11,7 +11,9 @@
 namespace smelt {
 namespace {
 
-Vec3 angular_momentum(const RigidBody<3>& body) { return from_skew(body.state.angular_momentum); }
+Vec3 angular_momentum(const RigidBody<3>& body) {
+  return from_skew(body.state.angular_momentum);
+}
 
 TEST(RigidBody, SpinOfABrickIsMomentumOverItsMoments) {
   const RigidBody<3> body = make_rigid_body<3>(make_brick(Vec3(0, 0, 0), Vec3(1, 2, 3)), 12.0);
@@ -65,10 +67,11 @@ TEST(RigidBody, WhatBoundsNoVolumeIsRefused) {
   EXPECT_THROW(make_rigid_body<3>(facets, 1.0), Error);
 }
 
-// ---------------------------------------------------------------------------------------------------------------- contacts
+// ------------------------------------------------------------------------------------------------------------ contacts
 
 template <int Dim>
-Obstacle<Dim> make_body(std::vector<Simplex<Dim>> facets, double mass, const Vec<Dim>& velocity, const ContactResponse& response) {
+Obstacle<Dim> make_body(std::vector<Simplex<Dim>> facets, double mass, const Vec<Dim>& velocity,
+                        const ContactResponse& response) {
   Obstacle<Dim> body;
   body.facets = std::move(facets);
   body.closed = true;
@@ -80,7 +83,8 @@ Obstacle<Dim> make_body(std::vector<Simplex<Dim>> facets, double mass, const Vec
 
 Obstacle<3> make_floor(const ContactResponse& response) {
   Obstacle<3> floor;
-  floor.facets = {{Vec3(-99, 0, -99), Vec3(-99, 0, 99), Vec3(99, 0, 99)}, {Vec3(-99, 0, -99), Vec3(99, 0, 99), Vec3(99, 0, -99)}};
+  floor.facets = {{Vec3(-99, 0, -99), Vec3(-99, 0, 99), Vec3(99, 0, 99)},
+                  {Vec3(-99, 0, -99), Vec3(99, 0, 99), Vec3(99, 0, -99)}};
   floor.response = response;
   return floor;
 }
@@ -119,7 +123,8 @@ TEST(BodyContacts, NothingFallsThroughTheFloor) {
         }
         const double rise = std::abs(colliders.placed()[1].body->state.velocity[1]);
         // What struck at 300 m/s still tumbles, or rolls at 60 m/s from corner to corner, after four seconds.
-        EXPECT_TRUE(response.restitution > 0.0 || speed > 100.0 || rise < 0.2) << "speed " << speed << " brick " << brick << ": " << rise;
+        EXPECT_TRUE(response.restitution > 0.0 || speed > 100.0 || rise < 0.2)
+            << "speed " << speed << " brick " << brick << ": " << rise;
       }
 }
 
@@ -169,7 +174,8 @@ TEST(BodyContacts, ABlowBetweenBodiesKeepsMomentum) {
   for (int step = 0; step < 100; ++step) advance<3>(colliders, Vec3::Zero(), 0.01 * step, 0.01);
   const auto [p1, l1, e1] = sums();
   EXPECT_NEAR((p1 - p).norm(), 0.0, 1e-12);
-  EXPECT_NEAR((l1 - l).norm(), 0.0, 0.02 * l.norm()) << "the corner strikes a skin's and a step's way before it touches";
+  EXPECT_NEAR((l1 - l).norm(), 0.0, 0.02 * l.norm())
+      << "the corner strikes a skin's and a step's way before it touches";
   EXPECT_LE(e1, e * (1.0 + 1e-6)) << "to what thirty sweeps leave";
   EXPECT_GT(e1, 0.8 * e);
   EXPECT_GT(colliders.placed()[1].body->state.velocity[0], 2.0);

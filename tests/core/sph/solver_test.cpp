@@ -4,10 +4,9 @@
 #include "core/sph/diagnostics.h"
 #include "core/sph/kernel.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
-
-#include <Eigen/Geometry>
 
 #include <algorithm>
 #include <cmath>
@@ -99,12 +98,14 @@ TEST(Solver, LoneParticleFallsExactlyAsLeapFrogDoes) {
 double rigid_force(bool rotate) {
   Particles<3> p = make_ball<3>(0.3, 1000.0, 0.2);
   const Vec3 spin(0.3, -1.1, 0.7);
-  for (std::size_t i = 0; i < p.size(); ++i) p.velocity[i] = rotate ? Vec3(spin.cross(p.position[i])) : Vec3(1.0, 2.0, 3.0);
+  for (std::size_t i = 0; i < p.size(); ++i)
+    p.velocity[i] = rotate ? Vec3(spin.cross(p.position[i])) : Vec3(1.0, 2.0, 3.0);
   auto parameters = make_parameters<3>();
   Solver<3, double> solver(parameters, {stiff_material()}, {}, p);
   solver.prepare();
   double largest = 0.0;
-  for (std::size_t i = 0; i < solver.particles().size(); ++i) largest = std::max(largest, solver.acceleration(i).norm());
+  for (std::size_t i = 0; i < solver.particles().size(); ++i)
+    largest = std::max(largest, solver.acceleration(i).norm());
   return largest;
 }
 
@@ -167,7 +168,9 @@ TEST(Solver, SumsOfPairsMatchBruteForce) {
       const Vec<2> x = q.position[i] - q.position[j], v = q.velocity[i] - q.velocity[j];
       const double r = x.norm();
       if (j == i || r >= kernel.support_radius()) continue;
-      const auto pressure = [&](std::size_t k) { return c * c * (q.density[k] - 1000.0) / (q.density[k] * q.density[k]); };
+      const auto pressure = [&](std::size_t k) {
+        return c * c * (q.density[k] - 1000.0) / (q.density[k] * q.density[k]);
+      };
       const double mu = h * v.dot(x) / (r * r + 0.01 * h * h);
       // [P 6-14] divides by a density twice: with that the term is a thousandth of this.
       const double pi = v.dot(x) < 0.0 ? -0.7 * c * mu / (0.5 * (q.density[i] + q.density[j])) : 0.0;
@@ -197,7 +200,8 @@ TEST(Solver, HeatSpreadsAtTheRightRate) {
   // Insulated ends (nothing beyond the particles) are what the cosine wants. Its amplitude, by projection:
   double amplitude = 0.0;
   for (std::size_t i = 0; i < n; ++i)
-    amplitude += 2.0 / n * (solver.particles().temperature[i] - 300.0) * std::cos(k * solver.particles().position[i][0]);
+    amplitude +=
+        2.0 / n * (solver.particles().temperature[i] - 300.0) * std::cos(k * solver.particles().position[i][0]);
   EXPECT_NEAR(std::log(10.0 / amplitude), 0.5, 0.005 * 0.5);
 }
 
@@ -236,8 +240,9 @@ TEST(Solver, ColdBlockStandsOnTheGround) {
   EXPECT_GT(lowest, 0.999 * std::cbrt(0.75 / 3.14159265358979) * spacing) << "a particle sank into the ground";
 }
 
-// XSPH moves particles with their neighbours' velocity and leaves the velocity itself alone [Monaghan 1989]; adding it to the velocity, as
-// [P 6-16] writes, would take epsilon of every difference between neighbours out of the motion at every step, however short.
+// XSPH moves particles with their neighbours' velocity and leaves the velocity itself alone [Monaghan 1989]; adding it
+// to the velocity, as [P 6-16] writes, would take epsilon of every difference between neighbours out of the motion at
+// every step, however short.
 TEST(Solver, XsphMovesParticlesButTakesNoVelocity) {
   Particles<2> p = make_ball<2>(0.3, 1000.0);
   for (std::size_t i = 0; i < p.size(); ++i) p.velocity[i] = Vec<2>(std::sin(30.0 * p.position[i][1]), 0.0);
@@ -254,7 +259,8 @@ TEST(Solver, XsphMovesParticlesButTakesNoVelocity) {
     const auto id = static_cast<std::size_t>(solver.particles().id[i]);
     const Vec<2> transport = (solver.particles().position[i] - start.position[id]) / dt;
     most_smoothed = std::max(most_smoothed, (transport - start.velocity[id]).norm());
-    EXPECT_LT((solver.particles().velocity[i] - start.velocity[id]).norm(), 1e-4) << "no more than acceleration over the step";
+    EXPECT_LT((solver.particles().velocity[i] - start.velocity[id]).norm(), 1e-4)
+        << "no more than acceleration over the step";
   }
   EXPECT_GT(most_smoothed, 0.1);
 }
@@ -278,7 +284,8 @@ Particles<3> run_on_threads(int threads, double split) {
   m.heat = HeatProperties{1e-3, 250.0, 350.0};
   const auto ground = [] {
     Colliders<3> colliders;
-    colliders.add({{{Vec3(-9, 0, -9), Vec3(-9, 0, 9), Vec3(9, 0, 9)}, {Vec3(-9, 0, -9), Vec3(9, 0, 9), Vec3(9, 0, -9)}}, {0.3, 0.2}});
+    colliders.add({{{Vec3(-9, 0, -9), Vec3(-9, 0, 9), Vec3(9, 0, 9)}, {Vec3(-9, 0, -9), Vec3(9, 0, 9), Vec3(9, 0, -9)}},
+                   {0.3, 0.2}});
     return colliders;
   };
   Solver<3, float> first(parameters, {m}, ground(), p);
@@ -309,7 +316,9 @@ TEST(Solver, SameBytesOnAnyThreadsAndAfterAResume) {
 Particles<2> sloshing_pool(int threads, bool resumed) {
   const tbb::global_control control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
   const auto tank = [] {
-    Obstacle<2> walls{{{Vec<2>(0.6, 2.0), Vec<2>(0.6, 0.0)}, {Vec<2>(0.6, 0.0), Vec<2>(-0.6, 0.0)}, {Vec<2>(-0.6, 0.0), Vec<2>(-0.6, 2.0)}}};
+    Obstacle<2> walls{{{Vec<2>(0.6, 2.0), Vec<2>(0.6, 0.0)},
+                       {Vec<2>(0.6, 0.0), Vec<2>(-0.6, 0.0)},
+                       {Vec<2>(-0.6, 0.0), Vec<2>(-0.6, 2.0)}}};
     walls.wall = walls.closed = true;
     Colliders<2> colliders;
     colliders.add(walls);
@@ -357,7 +366,9 @@ double density_error_in_free_fall() {
 }
 
 // Water at rest has a pressure gradient of rho g; water that falls has none.
-TEST(Solver, DensityDoesNotDiffuseInFreeFall) { EXPECT_LT(density_error_in_free_fall(), 1e-9); }
+TEST(Solver, DensityDoesNotDiffuseInFreeFall) {
+  EXPECT_LT(density_error_in_free_fall(), 1e-9);
+}
 
 // As much of it as a scene may ask for sets the step; with that of sound alone this pool blows up.
 TEST(Solver, DensityDiffusionBoundsTheStep) {
@@ -409,9 +420,10 @@ TEST(Solver, CorrectedDivergenceNeedsAStressAndTheContinuityEquation) {
   EXPECT_THROW((Solver<2, double>(parameters, {stiff_material()}, {}, make_ball<2>(0.4, 1000.0))), Error);
 }
 
-std::string divergence_of(Particles<3> p, SolverParameters<3> parameters) {
+std::string divergence_of(Particles<3> p, SolverParameters<3> parameters,
+                          const Material& material = inviscid_material()) {
   try {
-    Solver<3, double> solver(parameters, {inviscid_material()}, {}, std::move(p));
+    Solver<3, double> solver(parameters, {material}, {}, std::move(p));
     run_until(solver, 0.1);
   } catch (const DivergedError& error) {
     return error.what();
@@ -433,7 +445,24 @@ TEST(Solver, NamesTheParticleAndTheTermThatWentWrong) {
 
   parameters = make_parameters<3>();
   parameters.min_time_step = 1.0;
-  EXPECT_NE(divergence_of(make_ball<3>(0.1, 1000.0), parameters).find("limited by the acoustic term"), std::string::npos);
+  const auto expect_words = [&](Particles<3> ball, const Material& material, std::vector<std::string> words) {
+    const std::string text = divergence_of(std::move(ball), parameters, material);
+    for (const std::string& w : words) EXPECT_NE(text.find(w), std::string::npos) << text;
+  };
+  Particles<3> fast = make_ball<3>(0.1, 1000.0);
+  fast.velocity[3] = Vec3(1, 0, 0);
+  const std::string third = fmt::format("particle {} at (", fast.id[3]);
+  expect_words(fast, inviscid_material(), {"limited by the acoustic term: " + third, "lower [solver] sound_speed_m_s"});
+  Material thick = inviscid_material();
+  thick.rheology.consistency = {1e6, 1e6};
+  parameters.shear_wave_speed = 0.0;
+  expect_words(make_ball<3>(0.1, 1000.0), thick,
+               {"limited by the viscous term: particle ", "kinematic viscosity of 1e+03 m2/s"});
+  Particles<3> warm = make_ball<3>(0.1, 1000.0);
+  warm.temperature.assign(warm.size(), 300.0);
+  Material conductor = inviscid_material();
+  conductor.heat = HeatProperties{5.0, 250.0, 260.0};
+  expect_words(warm, conductor, {"limited by the conduction term: heat diffuses at 5 m2/s", "diffusivity_m2_s"});
 }
 
 TEST(Solver, UnusedTermsTakeNoMemory) {

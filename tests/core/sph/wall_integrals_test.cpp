@@ -1,4 +1,5 @@
 #include "core/sph/wall_integrals.h"
+
 #include "tests/core/sph/quadrature.h"
 
 #include <gtest/gtest.h>

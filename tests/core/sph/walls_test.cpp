@@ -122,7 +122,8 @@ TEST(Walls, ASheetHasTwoSides) {
     Solver<2, double> solver(make_parameters<2>(), {make_fluid()}, one(make_plane<2>(0.0, facing_up)), std::move(p));
     solver.prepare();
     std::vector<Vec<2>> by_id(solver.particles().size());
-    for (std::size_t i = 0; i < by_id.size(); ++i) by_id[static_cast<std::size_t>(solver.particles().id[i])] = solver.acceleration(i);
+    for (std::size_t i = 0; i < by_id.size(); ++i)
+      by_id[static_cast<std::size_t>(solver.particles().id[i])] = solver.acceleration(i);
     return by_id;
   };
   const auto above = accelerations(true, true);
@@ -219,7 +220,8 @@ TEST(Walls, AFineMeshIsTheSameWall) {
   const Colliders<3> a = one(std::move(coarse)), b = one(std::move(fine));
   for (const double height : {0.3, 0.45, 0.9, 1.6}) {
     Walls<3> of_coarse(WallKernel<3>(1.0), 0.8, 0.2), of_fine(WallKernel<3>(1.0), 0.8, 0.2);
-    const WallNeighbour<3> expected = look(a, Vec3(0.02, height, 0.05), of_coarse), found = look(b, Vec3(0.02, height, 0.05), of_fine);
+    const WallNeighbour<3> expected = look(a, Vec3(0.02, height, 0.05), of_coarse),
+                           found = look(b, Vec3(0.02, height, 0.05), of_fine);
     ASSERT_EQ(expected.contacts.size(), 1u);
     ASSERT_EQ(found.contacts.size(), 1u);
     EXPECT_NEAR(found.contacts[0].distance, height, 1e-6) << "samples are in single precision";
@@ -245,7 +247,8 @@ Obstacle<3> make_hills(int n, double reach) {
   return hills;
 }
 
-// From facets of two h to a twentieth of h: what a particle sees where it was found, and after it has moved by a quarter of h, is the sum over facets.
+// From facets of two h to a twentieth of h: what a particle sees where it was found, and after it has moved by a
+// quarter of h, is the sum over facets.
 TEST(Walls, HillsOfAnyFinenessAreWhatTheirFacetsSumUpTo) {
   for (const int n : {4, 12, 40, 160}) {
     const Obstacle<3> hills = make_hills(n, 4.0);
@@ -256,7 +259,8 @@ TEST(Walls, HillsOfAnyFinenessAreWhatTheirFacetsSumUpTo) {
       const std::vector<Vec3> found{Vec3(0.3, height, -0.4)};
       walls.reset(1);
       // The second so little that the sums of the first are carried on.
-      for (const Vec3& moved : {Vec3(0, 0, 0), Vec3(0.01, -0.015, 0.005), Vec3(0.1, -0.15, 0.1), Vec3(-0.1, 0.2, 0.05)}) {
+      for (const Vec3& moved :
+           {Vec3(0, 0, 0), Vec3(0.01, -0.015, 0.005), Vec3(0.1, -0.15, 0.1), Vec3(-0.1, 0.2, 0.05)}) {
         const std::vector<Vec3> now{found[0] + moved};
         walls.update(colliders, now, std::vector<Vec3>{Vec3::Zero()}, 0.0);
         double solid = 0.0;
@@ -288,7 +292,8 @@ std::vector<Simplex<3>> make_ball() {
   constexpr int n = 48;
   const auto on_ball = [](int i, int k) {
     const double polar = std::numbers::pi * i / n, azimuth = 2.0 * std::numbers::pi * k / n;
-    return Vec3(5.0 * std::sin(polar) * std::cos(azimuth), 5.0 * std::cos(polar), 5.0 * std::sin(polar) * std::sin(azimuth));
+    return Vec3(5.0 * std::sin(polar) * std::cos(azimuth), 5.0 * std::cos(polar),
+                5.0 * std::sin(polar) * std::sin(azimuth));
   };
   for (int i = 0; i < n; ++i)
     for (int k = 0; k < n; ++k) {
@@ -322,8 +327,9 @@ TEST(Walls, ACurvedMeshIsAFewPatches) {
   EXPECT_NEAR(seen.solid, solid, 2e-3);
 }
 
-// What slides round in a bowl is pushed neither on nor back: over a way of many facets the push along it cancels. Sums that lag behind the
-// particle by up to h/50 would push it on by 2e-3 of what holds it off, at any speed, and a pool would begin to turn.
+// What slides round in a bowl is pushed neither on nor back: over a way of many facets the push along it cancels. Sums
+// that lag behind the particle by up to h/50 would push it on by 2e-3 of what holds it off, at any speed, and a pool
+// would begin to turn.
 TEST(Walls, SlidingRoundABowlIsPushedNeitherWay) {
   Obstacle<3> bowl;
   bowl.wall = true;
