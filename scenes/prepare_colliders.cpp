@@ -151,6 +151,11 @@ void prepare_collider(const Scene& scene, std::size_t k, double spacing, std::ve
           "{}: the collider is not quite closed ({} open edges, {} with more than two faces, {} between faces wound "
           "against each other): taken for a sheet with two sides, not for a solid",
           name, topology.n_boundary_edges, topology.n_nonmanifold_edges, topology.n_misoriented_edges));
+    else if (topology.n_nonmanifold_edges > 0 && scene.colliders[k].wall)
+      setup.warnings.push_back(fmt::format(
+          "{}: the collider branches (edges with more than two faces: {}): near them pressure and shear may come from "
+          "the wrong side; make its parts colliders of their own",
+          name, topology.n_nonmanifold_edges));
     // A sheet has two sides, and fluid stays on that which it starts on: looking up, it is the ground of what is above.
     if (compute_vector_area(mesh)[1] < 0.0)
       for (auto& t : setup.colliders[k].triangles) std::swap(t[1], t[2]);

@@ -93,6 +93,18 @@ TEST(PrepareColliders, ASheetOfDoubledFacesIsOneThatLooksUp) {
   EXPECT_NEAR((compute_vector_area(setup.colliders[0]) - Vec3::UnitY()).norm(), 0.0, 1e-12);
 }
 
+// A floor with a wall in its middle, three faces at the edge between them.
+TEST(PrepareColliders, ASheetThatBranchesIsSaidTo) {
+  TriangleMesh sheet;
+  for (const double x : {-1.0, 0.0, 1.0})
+    for (const double z : {0.0, 1.0}) sheet.vertices.emplace_back(x, 0.0, z);
+  sheet.vertices.emplace_back(0.0, 1.0, 0.0);
+  sheet.vertices.emplace_back(0.0, 1.0, 1.0);
+  sheet.triangles = {{0, 1, 3}, {0, 3, 2}, {2, 3, 5}, {2, 5, 4}, {2, 3, 7}, {2, 7, 6}};
+  const SimulationSetup setup = build_simulation(scene_with(write_obj("branches.obj", sheet), 1.0, Vec3(5, 0, 0)));
+  expect_warning(setup, "branches.obj", "the collider branches (edges with more than two faces: 1)");
+}
+
 TEST(PrepareColliders, SizesThatNoUnitFitsAreNamed) {
   expect_warning(build_simulation(scene_with("assets/bad/open_box.obj", 1000.0, Vec3(50, 0, 0))), "open_box.obj",
                  "enormous, 1e+03 x 1e+03 x 1e+03 m");
