@@ -16,6 +16,12 @@ class Error : public std::runtime_error {
   explicit Error(const std::string& message) : std::runtime_error(message) {}
 };
 
+/// A file that cannot be written: no other will be either, so nothing goes on after it.
+class WriteError : public Error {
+ public:
+  using Error::Error;
+};
+
 /// The simulation went wrong: NaN, an escaped particle, a collapsed time step. The message names the particle, the term
 /// and the time (exit code 4).
 class DivergedError : public std::runtime_error {

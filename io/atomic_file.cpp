@@ -5,6 +5,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
@@ -40,7 +41,7 @@ std::string_view advice(int error) {
 }
 
 [[noreturn]] void fail_to_write(const std::filesystem::path& path, int error) {
-  fail("{}: cannot be written: {}; {}", path.string(), std::strerror(error), advice(error));
+  throw WriteError(fmt::format("{}: cannot be written: {}; {}", path.string(), std::strerror(error), advice(error)));
 }
 
 /// A file descriptor that closes itself.
@@ -88,7 +89,7 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
 void write_file_atomically(const std::filesystem::path& path,
                            const std::function<void(const std::filesystem::path& temporary)>& write) {
   std::filesystem::path temporary = path;
-  temporary += ".tmp";
+  temporary += fmt::format(".{}.tmp", ::getpid());  // several machines may work in one folder
   try {
     // Made here first: libraries seldom say why a file could not be.
     write_all(temporary, path, {});
@@ -99,6 +100,16 @@ void write_file_atomically(const std::filesystem::path& path,
     ::unlink(temporary.c_str());
     throw;
   }
+}
+
+FolderLock::FolderLock(const std::filesystem::path& folder)
+    : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+  while (fd_ >= 0 && ::flock(fd_, LOCK_EX) != 0 && errno == EINTR) {
+  }
+}
+
+FolderLock::~FolderLock() {
+  if (fd_ >= 0) ::close(fd_);  // which unlocks
 }
 
 void create_directories_or_fail(const std::filesystem::path& folder) {

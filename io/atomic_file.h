@@ -18,6 +18,18 @@ void write_file_atomically(const std::filesystem::path& path, std::string_view b
 void write_file_atomically(const std::filesystem::path& path,
                            const std::function<void(const std::filesystem::path& temporary)>& write);
 
+/// While it lives no other process holds a lock of the same folder. Where a file system has no locks it does nothing.
+class FolderLock {
+ public:
+  explicit FolderLock(const std::filesystem::path& folder);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int fd_;
+};
+
 /// Makes `folder` and its parents; no-op where it exists. Throws Error where it cannot, or where a file is in the way.
 void create_directories_or_fail(const std::filesystem::path& folder);
 

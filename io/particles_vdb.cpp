@@ -45,6 +45,7 @@ void check_sizes(const ParticleFrame& p) {
   CHECK_EQ(p.id.size(), p.size());
   if (!p.temperature.empty()) CHECK_EQ(p.temperature.size(), p.size());
   if (!p.viscosity.empty()) CHECK_EQ(p.viscosity.size(), p.size());
+  if (!p.masses.empty()) CHECK_EQ(p.masses.size(), p.size());
   if (!p.rest.empty()) CHECK_EQ(p.rest.size(), p.size());
 }
 
@@ -183,6 +184,7 @@ void write_particles(const std::filesystem::path& path, const ParticleFrame& par
   add_attribute(grid->tree(), index_grid->tree(), "density", permuted(particles.density, order));
   add_attribute(grid->tree(), index_grid->tree(), "temperature", permuted(particles.temperature, order));
   add_attribute(grid->tree(), index_grid->tree(), "viscosity", permuted(particles.viscosity, order));
+  add_attribute(grid->tree(), index_grid->tree(), "mass", permuted(particles.masses, order));
   add_attribute(grid->tree(), index_grid->tree(), "rest", to_vdb_vectors(particles.rest, order));
   add_attribute(grid->tree(), index_grid->tree(), "id", permuted(particles.id, order));
 
@@ -232,6 +234,7 @@ ParticleFrame read_particles(const std::filesystem::path& path) {
   p.density = read_floats("density", true);
   p.temperature = read_floats("temperature", false);
   p.viscosity = read_floats("viscosity", false);
+  p.masses = read_floats("mass", false);
   return p;
 }
 

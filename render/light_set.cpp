@@ -129,10 +129,11 @@ Vec3f LightSet::sky(const Vec3f& direction) const {
 Vec3f LightSet::far_radiance(const Vec3f& point, const Vec3f& direction, float pdf) const {
   Vec3f radiance = sky(direction);
   const bool in_sun = sun_ && sun_->contains(direction);
-  if (!in_sun && !environment_) return radiance;
+  const bool lit_by_map = environment_ && environment_weight_ > 0.0f;  // a panorama may be black
+  if (!in_sun && !lit_by_map) return radiance;
   const float per_total = 1.0f / total_weight(point);
   if (in_sun) radiance += sun_->radiance * power_heuristic(pdf, sun_->weight * per_total / sun_->solid_angle);
-  if (environment_)
+  if (lit_by_map)
     radiance += environment_->radiance(direction) *
                 power_heuristic(pdf, environment_weight_ * per_total * environment_->pdf(direction));
   return radiance;

@@ -10,6 +10,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -166,7 +167,10 @@ Film render_film(const SurfaceMesh& fluid, const RenderScene& scene, const Rende
   Film film = sample_film(shading, exposed, frame);
   if (options.denoise) {
     const auto pixels_per_radian = static_cast<float>(CameraFrame(scene.camera).pixels_per_x);
-    denoise(film.light, film.light_variance, film, film.albedo[1], pixels_per_radian, {});
+    Plane coloured(film.size());  // where the body shows anything, of whichever colour
+    for (std::size_t i = 0; i < coloured.size(); ++i)
+      coloured[i] = std::max({film.albedo[0][i], film.albedo[1][i], film.albedo[2][i]});
+    denoise(film.light, film.light_variance, film, coloured, pixels_per_radian, {});
     // Reflections turn twice as fast as the surface, and their edges are what makes it look wet.
     const DenoiseOptions sharp{.n_levels = 4, .luminance_sigmas = 4.0f, .normal_width = 0.15f};
     denoise(film.specular, film.specular_variance, film, film.kind, pixels_per_radian, sharp);

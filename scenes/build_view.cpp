@@ -175,7 +175,10 @@ RenderScene build_view(const Scene& scene) {
   if (!scene.lights.empty() || scene.environment.kind != "studio") view.lights.clear();
   for (const LightSettings& light : scene.lights) view.lights.push_back(to_light(light));
   view.ground.enabled = ground != scene.colliders.end();
-  if (view.ground.enabled) view.ground.height = ground->ground_height;
+  if (view.ground.enabled) {
+    view.ground.height = ground->ground_height;
+    if (ground->colour != ColliderSettings().colour) view.ground.colour = ground->colour.cast<float>();
+  }
   for (const ColliderSettings& collider : scene.colliders)
     if (collider.mesh != "ground") {
       TriangleMesh& mesh = obstacles[view.colliders.size()];
@@ -191,7 +194,10 @@ void place_colliders(const Scene& scene, double time, const std::vector<BodyPose
   std::size_t drawn = 0;
   for (std::size_t k = 0; k < scene.colliders.size(); ++k) {
     const ColliderSettings& collider = scene.colliders[k];
-    if (collider.mesh == "ground") continue;
+    if (collider.mesh == "ground") {
+      if (collider.until) view.ground.enabled = time < *collider.until;
+      continue;
+    }
     const std::size_t shown = drawn++;
     ColliderView& drawn_view = view.colliders[shown];
     if (collider.until && time >= *collider.until) {

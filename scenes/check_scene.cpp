@@ -12,11 +12,14 @@
 #include "scenes/solver_frame.h"
 #include "scenes/surface_files.h"
 
+#include <tbb/global_control.h>
+
 #include <chrono>
 #include <cmath>
 #include <filesystem>
 #include <functional>
 #include <numbers>
+#include <thread>
 #include <unistd.h>
 
 namespace smelt {
@@ -155,14 +158,20 @@ void take_trial_steps(const Scene& scene, SimulationSetup& setup, int n_trial_st
       forecast.time_step = step.dt;
       forecast.time_step_term = time_step_term_names[static_cast<std::size_t>(step.term)];
     }
-    if (n_steps + 1 == n_warm_up) start = std::chrono::steady_clock::now();
+    // Of a frame of no more steps than the warm-up's, all count.
+    if (n_steps + 1 == n_warm_up && remaining > 0.0) start = std::chrono::steady_clock::now();
   }
   const int n_timed = n_steps > n_warm_up ? n_steps - n_warm_up : n_steps;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   const double growth = mean_growth(scene, setup, n_start, n_trial);
   forecast.n_steps = std::ceil((scene.shot.frames - 1) / scene.shot.fps / forecast.time_step);
   forecast.simulate_seconds = activity * forecast.n_steps * seconds / n_timed * growth;
-  if (with_pictures) forecast_pictures(scene, to_frame(solver, setup.spacing, 1, 0.0), growth, forecast);
+  if (with_pictures) {
+    ParticleFrame frame = to_frame(solver, setup.spacing, 1, 0.0);
+    if (scene.particles.rest_position)
+      for (const Vec3& x : frame.position) frame.rest.push_back(x.cast<float>());
+    forecast_pictures(scene, frame, growth, forecast);
+  }
 
   const auto& state = solver.particles();
   double state_bytes = 0.0;
@@ -193,7 +202,9 @@ SceneForecast forecast_scene(const Scene& scene, int n_trial_steps, bool with_pi
     take_trial_steps<double>(scene, setup, n_trial_steps, with_pictures, forecast);
   else
     take_trial_steps<float>(scene, setup, n_trial_steps, with_pictures, forecast);
-  forecast.load = measure_load();
+  // The calibration's work took all threads.
+  const std::size_t n_threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+  if (n_threads >= std::thread::hardware_concurrency()) forecast.load = measure_load();
   if (forecast.load)
     for (double* seconds : {&forecast.simulate_seconds, &forecast.surface_seconds, &forecast.render_seconds})
       *seconds /= *forecast.load;

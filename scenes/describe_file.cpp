@@ -20,6 +20,7 @@ namespace smelt {
 namespace {
 
 std::string describe_bounds(const Box3& b) {
+  if (b.empty()) return "bounds     none\n";
   return fmt::format("bounds     ({:.6g}, {:.6g}, {:.6g}) to ({:.6g}, {:.6g}, {:.6g}) m\n", b.lower[0], b.lower[1],
                      b.lower[2], b.upper[0], b.upper[1], b.upper[2]);
 }
@@ -44,10 +45,8 @@ std::string describe_fields(const ParticleFrame& p) {
 
 std::string describe_particles(const std::filesystem::path& path) {
   const ParticleFrame p = read_particles(path);
-  const double volume =
-      p.size() > 0 ? std::accumulate(p.density.begin(), p.density.end(), 0.0,
-                                     [&](double sum, float d) { return sum + p.mass / static_cast<double>(d); })
-                   : 0.0;
+  double volume = 0.0;
+  for (std::size_t i = 0; i < p.size(); ++i) volume += p.mass_of(i) / static_cast<double>(p.density[i]);
   return fmt::format(
              "particles  {}\nframe      {} at {:.6g} s\nspacing    {:.6g} m, smoothing length {:.6g} m, mass {:.6g} kg "
              "each\nvolume     {:.6g} m3\n",
@@ -116,7 +115,8 @@ std::string describe_checkpoint(const std::filesystem::path& path) {
 
 /// Whether a PLY file is a mesh; other particle clouds never are.
 bool has_faces(const std::filesystem::path& path) {
-  if (path.extension() != ".ply") return false;
+  const std::string extension = path.extension().string();
+  if (extension != ".ply" && extension != ".PLY") return false;
   const PlyHeader header = read_ply_header(path, read_file(path));
   return std::any_of(header.elements.begin(), header.elements.end(),
                      [](const PlyElement& e) { return e.name == "face" && e.count > 0; });

@@ -17,11 +17,13 @@ class FailedFrames {
   FailedFrames(std::string stage, std::filesystem::path scene_file, Progress& progress)
       : stage_(std::move(stage)), scene_file_(std::move(scene_file)), progress_(progress) {}
 
-  /// Does the work; an Error, or memory running out, is told to the user and kept.
+  /// Does the work; an Error, or memory running out, is told to the user and kept, but not a disk that is full.
   template <typename Work>
   void attempt(int frame, const Work& work) {
     try {
       work();
+    } catch (const WriteError&) {
+      throw;
     } catch (const Error& error) {
       keep(frame, error.what());
     } catch (const std::bad_alloc&) {

@@ -13,31 +13,14 @@ std::optional<std::filesystem::path> encode_film(const OutputFolder& folder, con
   }
   const auto film = folder.root / (name + ".mp4");
   const auto temporary = folder.root / (name + ".tmp.mp4");
-  const int status = run_program({"ffmpeg",
-                                  "-y",
-                                  "-loglevel",
-                                  "error",
-                                  "-framerate",
-                                  fmt::format("{}", fps),
-                                  "-start_number",
-                                  "1",
-                                  "-i",
-                                  (folder.frames() / "frame.%04d.png").string(),
-                                  "-frames:v",
-                                  fmt::to_string(n_frames),
-                                  "-vf",
-                                  "crop=trunc(iw/2)*2:trunc(ih/2)*2",
-                                  "-c:v",
-                                  "libx264",
-                                  "-preset",
-                                  "veryfast",
-                                  "-crf",
-                                  "18",
-                                  "-pix_fmt",
-                                  "yuv420p",
-                                  "-movflags",
-                                  "+faststart",
-                                  temporary.string()});
+  const int status =
+      run_program({"ffmpeg", "-y", "-loglevel", "error", "-framerate", fmt::format("{}", fps), "-start_number", "1",
+                   "-i", (folder.frames() / "frame.%04d.png").string(), "-frames:v", fmt::to_string(n_frames), "-vf",
+                   "crop=trunc(iw/2)*2:trunc(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv",
+                   // Said, or players guess: reds would shift.
+                   "-colorspace", "bt709", "-color_primaries", "bt709", "-color_trc", "iec61966-2-1", "-color_range",
+                   "tv", "-c:v", "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p", "-movflags",
+                   "+faststart", temporary.string()});
   if (status == 0) {
     std::filesystem::rename(temporary, film);
     return film;

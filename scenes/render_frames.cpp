@@ -1,4 +1,5 @@
 #include "core/error.h"
+#include "core/hash.h"
 #include "io/atomic_file.h"
 #include "io/exr.h"
 #include "io/png.h"
@@ -6,6 +7,7 @@
 #include "render/render_frame.h"
 #include "scenes/build_view.h"
 #include "scenes/failed_frames.h"
+#include "scenes/scene_writer.h"
 #include "scenes/stage_frames.h"
 #include "scenes/stages.h"
 
@@ -17,6 +19,14 @@ namespace {
 
 bool is_done(const Scene& scene, const OutputFolder& folder, int frame) {
   return all_exist({folder.picture(frame)}) && (!scene.render.exr || all_exist({folder.exr(frame)}));
+}
+
+/// All that pictures depend on beside the surface and where colliders are.
+std::string describe_look(const Scene& scene) {
+  std::string text = write_section(scene, SceneSection::render);
+  for (const ColliderSettings& c : scene.colliders)
+    text += fmt::format("{} {} {} {} {}\n", c.colour[0], c.colour[1], c.colour[2], c.material, c.roughness);
+  return text;
 }
 
 /// The PNG last: where it is, the frame is whole.
@@ -42,12 +52,15 @@ void render_frames(const Scene& scene, const OutputFolder& folder, const StageOp
       std::any_of(scene.colliders.begin(), scene.colliders.end(), [](const ColliderSettings& c) { return c.rigid(); });
   create_directories_or_fail(folder.frames());
   const RenderOptions quality = to_options(scene.render);
+  const std::string look = describe_look(scene);
   FailedFrames failed("render", scene.file, progress);
   for (int frame = options.frames.first; frame <= options.frames.last; ++frame) {
     progress.update({"render", frame, options.frames.first, options.frames.last, 0.0, ""});
     stop_if_asked(progress, "render", frame);
-    if (options.resume && is_done(scene, folder, frame)) continue;
+    const std::uint64_t settings = hash_bytes(look, report.settings_of(frame, "surface").value_or(0));
+    if (options.resume && report.settings_of(frame, "render") == settings && is_done(scene, folder, frame)) continue;
     failed.attempt(frame, [&] {
+      report.begin(frame, "render");
       const CostMeter meter;
       const double time = (frame - 1) / scene.shot.fps;
       const std::vector<BodyPose> bodies = has_bodies ? read_body_poses(folder.bodies(frame)) : std::vector<BodyPose>{};
@@ -56,7 +69,7 @@ void render_frames(const Scene& scene, const OutputFolder& folder, const StageOp
       const SurfaceMesh surface = read_surface(folder.surface_obj(frame), folder.surface_vdb(frame));
       const Film film = render_film(surface, view, quality, frame);
       write_pictures(scene, folder, frame, film, view.camera.eye);
-      report.set_rendered(frame, clamped_share(film), meter.finish({folder.picture(frame)}));
+      report.set_rendered(frame, clamped_share(film), meter.finish({folder.picture(frame)}), settings);
     });
   }
   failed.throw_if_any();

@@ -63,7 +63,7 @@ void StepStatistics::add(const TimeStep& step) {
 }
 
 RunReport::RunReport(std::filesystem::path path, bool keep)
-    : path_(std::move(path)), document_(std::make_unique<Document>()) {
+    : path_(std::move(path)), document_(std::make_unique<Document>()), shared_(keep) {
   if (!keep || !std::filesystem::exists(path_)) return;
   ordered_json old = ordered_json::parse(read_file(path_), nullptr, /*allow_exceptions=*/false);
   if (old.is_object()) document_->root = std::move(old);
@@ -118,24 +118,59 @@ void RunReport::set_simulated(int frame, double time, const StepStatistics& step
   if (heat) entry["heat"] = heat_json(d.enthalpy, *heat);
   entry.update(cost_json(cost));
   document_->frame(frame)["simulate"] = entry;
-  save();
+  set(frame, "simulate");
 }
 
 void RunReport::set_surfaced(int frame, double volume, std::size_t n_vertices, std::size_t n_triangles,
-                             const StageCost& cost) {
+                             const StageCost& cost, std::uint64_t settings) {
   ordered_json entry = {{"volume_m3", volume}, {"vertices", n_vertices}, {"triangles", n_triangles}};
   entry.update(cost_json(cost));
+  entry["settings"] = fmt::format("{:016x}", settings);
   document_->frame(frame)["surface"] = entry;
-  save();
+  set(frame, "surface");
 }
 
-void RunReport::set_rendered(int frame, double clamped_share, const StageCost& cost) {
-  document_->frame(frame)["render"] = cost_json(cost);
-  document_->frame(frame)["render"]["clamped_share"] = clamped_share;
+void RunReport::set_rendered(int frame, double clamped_share, const StageCost& cost, std::uint64_t settings) {
+  ordered_json entry = cost_json(cost);
+  entry["clamped_share"] = clamped_share;
+  entry["settings"] = fmt::format("{:016x}", settings);
+  document_->frame(frame)["render"] = entry;
+  set(frame, "render");
+}
+
+std::optional<std::uint64_t> RunReport::settings_of(int frame, const std::string& stage) const {
+  const ordered_json& root = document_->root;
+  const auto k = static_cast<std::size_t>(frame) - 1;
+  if (!root.contains("frames") || k >= root["frames"].size()) return std::nullopt;
+  const ordered_json& entry = root["frames"][k];
+  if (!entry.contains(stage) || !entry[stage].contains("settings")) return std::nullopt;
+  return std::stoull(entry[stage]["settings"].get<std::string>(), nullptr, 16);
+}
+
+void RunReport::begin(int frame, const std::string& stage) {
+  if (settings_of(frame, stage) && document_->frame(frame).erase(stage) > 0) set(frame, stage);
+}
+
+void RunReport::set(int frame, const std::string& stage) {
+  ours_.emplace(frame, stage);
   save();
 }
 
 void RunReport::save() {
+  const FolderLock lock(path_.parent_path());
+  if (shared_ && std::filesystem::exists(path_)) {
+    ordered_json theirs = ordered_json::parse(read_file(path_), nullptr, /*allow_exceptions=*/false);
+    if (theirs.is_object() && theirs.contains("frames")) {
+      Document merged{std::move(theirs)};
+      for (const auto& [frame, stage] : ours_) {
+        const ordered_json& mine = document_->frame(frame);
+        merged.frame(frame).erase(stage);
+        if (mine.contains(stage)) merged.frame(frame)[stage] = mine[stage];
+      }
+      document_->root["frames"] = std::move(merged.root["frames"]);
+    }
+  }
+  shared_ = true;
   write_file_atomically(path_, document_->root.dump(1) + "\n");
 }
 

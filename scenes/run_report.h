@@ -10,7 +10,9 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace smelt {
@@ -57,7 +59,7 @@ struct StageCost {
 };
 
 /// Keeps run.json up to date: each set_... replaces that stage of that frame and saves, so that a killed run leaves a
-/// true report.
+/// true report. Several machines may surface or render frames in one folder: each keeps what the others wrote.
 class RunReport {
  public:
   /// Goes on from an existing report where `keep` is set and there is a readable one.
@@ -70,15 +72,28 @@ class RunReport {
   void set_simulated(int frame, double time, const StepStatistics& steps, const Diagnostics<3>& diagnostics,
                      const std::optional<MassAccount>& mass, const std::optional<HeatLedger>& heat,
                      const std::vector<BodyPose>& bodies, const StageCost& cost);
-  void set_surfaced(int frame, double volume, std::size_t n_vertices, std::size_t n_triangles, const StageCost& cost);
+  /// `settings`: a hash of what the files were made from (made_from).
+  void set_surfaced(int frame, double volume, std::size_t n_vertices, std::size_t n_triangles, const StageCost& cost,
+                    std::uint64_t settings);
   /// `clamped_share`: of the picture's light, what the firefly limit took away.
-  void set_rendered(int frame, double clamped_share, const StageCost& cost);
-  void save();
+  void set_rendered(int frame, double clamped_share, const StageCost& cost, std::uint64_t settings);
+
+  /// The hash of what a stage ("surface", "render") made the files of a frame from; nothing where it has not, or
+  /// was cut off.
+  std::optional<std::uint64_t> settings_of(int frame, const std::string& stage) const;
+
+  /// Takes a stage's entry back before its files are made anew: if that is cut off, they are neither old nor new.
+  void begin(int frame, const std::string& stage);
 
  private:
   struct Document;
+  void set(int frame, const std::string& stage);
+  void save();
+
   std::filesystem::path path_;
   std::unique_ptr<Document> document_;
+  bool shared_;                                 ///< another machine may have written to the file
+  std::set<std::pair<int, std::string>> ours_;  ///< stages of frames that this run made
 };
 
 }  // namespace smelt

@@ -3,8 +3,6 @@
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "scenes/film.h"
-#include "scenes/scene_reader.h"
-#include "scenes/scene_writer.h"
 
 #include <charconv>
 #include <chrono>
@@ -15,8 +13,10 @@ namespace smelt {
 namespace {
 
 OutputFolder output_folder(const Scene& scene, const RunOptions& options) {
-  return {std::filesystem::absolute(options.folder.empty() ? std::filesystem::path("out") / scene.shot.name
-                                                           : options.folder)};
+  const std::filesystem::path folder =
+      options.folder.empty() ? std::filesystem::path("out") / scene.shot.name : options.folder;
+  const std::filesystem::path root = std::filesystem::absolute(folder).lexically_normal();
+  return {root.has_filename() ? root : root.parent_path()};  // "out/", as a shell completes it, is "out"
 }
 
 double timed(const std::function<void()>& work) {
@@ -40,29 +40,6 @@ void move_aside(const OutputFolder& folder, Progress& progress) {
     progress.message(fmt::format("moved the earlier result to {} (--resume goes on from it instead)", aside.string()));
     return;
   }
-}
-
-/// Whether a stage's files in the folder were made from the same settings as the scene's.
-bool made_from_same(const OutputFolder& folder, const Scene& scene, SceneSection section) {
-  if (!std::filesystem::exists(folder.scene())) return false;
-  try {
-    return write_section(read_scene(folder.scene()), section) == write_section(scene, section);
-  } catch (const Error&) {
-    return false;  // a scene of another version, say: make it again
-  }
-}
-
-/// What may be kept of an earlier run, judged before its scene.toml is replaced.
-struct Kept {
-  bool surface = false;
-  bool render = false;
-};
-
-Kept judge_kept(const OutputFolder& folder, const Scene& scene, bool resume) {
-  Kept kept;
-  kept.surface = resume && made_from_same(folder, scene, SceneSection::surface);
-  kept.render = kept.surface && made_from_same(folder, scene, SceneSection::render);
-  return kept;
 }
 
 /// The pictures asked for: the scene's own or diagnostic ones; for a sheet only those on it.
@@ -100,12 +77,11 @@ RunSummary run_scene(const Scene& scene, const RunOptions& options, Progress& pr
   const OutputFolder& folder = summary.folder;
   if (!options.resume) move_aside(folder, progress);
   create_directories_or_fail(folder.root);
-  const Kept kept = judge_kept(folder, scene, options.resume);
   RunReport report(folder.report(), options.resume);
-  const auto stage = [&](bool keep) { return StageOptions{summary.frames, keep}; };
-  summary.simulate_seconds = timed([&] { simulate_frames(scene, folder, stage(options.resume), report, progress); });
-  summary.surface_seconds = timed([&] { surface_frames(scene, folder, stage(kept.surface), report, progress); });
-  summary.render_seconds = timed([&] { render_frames(scene, folder, stage(kept.render), report, progress); });
+  const StageOptions stage{summary.frames, options.resume};
+  summary.simulate_seconds = timed([&] { simulate_frames(scene, folder, stage, report, progress); });
+  summary.surface_seconds = timed([&] { surface_frames(scene, folder, stage, report, progress); });
+  summary.render_seconds = timed([&] { render_frames(scene, folder, stage, report, progress); });
   if (summary.frames.last == scene.shot.frames) {
     std::string why_not;
     summary.film = encode_film(folder, scene.shot.name, scene.shot.frames, scene.shot.fps, why_not);
@@ -119,23 +95,17 @@ RunSummary run_stage(const Scene& scene, Stage stage, const RunOptions& options,
   const OutputFolder& folder = summary.folder;
   if (stage == Stage::simulate && !options.resume) move_aside(folder, progress);
   create_directories_or_fail(folder.root);
-  const Kept kept = judge_kept(folder, scene, options.resume);
   RunReport report(folder.report(), stage != Stage::simulate || options.resume);
+  const StageOptions how{summary.frames, options.resume};
   switch (stage) {
     case Stage::simulate:
-      summary.simulate_seconds = timed([&] {
-        simulate_frames(scene, folder, {summary.frames, options.resume}, report, progress);
-      });
+      summary.simulate_seconds = timed([&] { simulate_frames(scene, folder, how, report, progress); });
       break;
     case Stage::surface:
-      summary.surface_seconds = timed([&] {
-        surface_frames(scene, folder, {summary.frames, kept.surface}, report, progress);
-      });
+      summary.surface_seconds = timed([&] { surface_frames(scene, folder, how, report, progress); });
       break;
     case Stage::render:
-      summary.render_seconds = timed([&] {
-        draw_pictures(scene, folder, {summary.frames, kept.render}, options.pictures, report, progress);
-      });
+      summary.render_seconds = timed([&] { draw_pictures(scene, folder, how, options.pictures, report, progress); });
       if (options.pictures.sheet_columns > 0) summary.sheet = write_sheet(folder, summary.frames, options.pictures);
       break;
   }

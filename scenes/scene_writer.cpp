@@ -223,7 +223,7 @@ class ReferenceWriter final : public SchemaVisitor {
   std::string rows_;
 };
 
-/// A mesh path that means the same file from any folder.
+/// A path of a mesh or a panorama that means the same file from any folder.
 std::string portable_mesh(const Scene& scene, const std::string& mesh) {
   const std::filesystem::path file = find_mesh(scene, mesh);
   const std::filesystem::path inside = file.lexically_relative(std::filesystem::weakly_canonical(smelt_folder()));
@@ -236,6 +236,7 @@ Scene with_portable_meshes(const Scene& scene) {
   for (auto& body : copy.bodies) body.mesh = portable_mesh(scene, body.mesh);
   for (auto& collider : copy.colliders)
     if (collider.mesh != "ground") collider.mesh = portable_mesh(scene, collider.mesh);
+  if (!copy.environment.image.empty()) copy.environment.image = portable_mesh(scene, copy.environment.image);
   return copy;
 }
 

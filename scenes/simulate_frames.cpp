@@ -6,6 +6,7 @@
 #include "io/particles_vdb.h"
 #include "scenes/build_simulation.h"
 #include "scenes/rest_positions.h"
+#include "scenes/scene_reader.h"
 #include "scenes/scene_writer.h"
 #include "scenes/solver_frame.h"
 #include "scenes/stage_frames.h"
@@ -48,7 +49,7 @@ std::optional<Checkpoint> find_checkpoint(const OutputFolder& folder, std::uint6
     if (!checkpoint) continue;
     if (checkpoint->scene_hash != scene_hash)
       fail(
-          "{}: this folder was simulated from another scene, or by another version of smelt; resume with {}, or use "
+          "{}: this folder was simulated from another scene or other meshes, or by another version of smelt; resume with {}, or use "
           "another folder (-o)",
           file.string(), folder.scene().string());
     return checkpoint;
@@ -89,15 +90,20 @@ std::vector<BodyPose> to_body_poses(const Colliders<3>& colliders) {
   return poses;
 }
 
-/// Cache first, then the checkpoint: a checkpoint says that its frame is safe.
 template <typename Real>
-void store_frame(const Solver<3, Real>& solver, const SimulationSetup& setup, const OutputFolder& folder,
-                 std::uint64_t scene_hash, int frame, double time, std::optional<RestPositions>& rest) {
+void store_frame(const Solver<3, Real>& solver, const SimulationSetup& setup, const OutputFolder& folder, int frame,
+                 double time, std::optional<RestPositions>& rest) {
   ParticleFrame cache = to_frame(solver, setup.spacing, frame, time);
   if (rest) rest->set_rest(cache);
   write_particles(folder.particles(frame), cache);
   const std::vector<BodyPose> bodies = to_body_poses(solver.colliders());
   if (!bodies.empty()) write_body_poses(folder.bodies(frame), frame, time, bodies);
+}
+
+/// After the cache and the report: a checkpoint says that all of its frame is safe.
+template <typename Real>
+void store_checkpoint(const Solver<3, Real>& solver, const OutputFolder& folder, std::uint64_t scene_hash, int frame,
+                      double time) {
   write_checkpoint(folder.checkpoint(frame),
                    {frame, time, scene_hash, solver.particles(), solver.account(), solver.colliders().body_states()});
   std::filesystem::remove(folder.checkpoint(frame - 2));
@@ -128,10 +134,11 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
     progress.message(fmt::format("resuming after frame {}", frame));
   } else {
     const CostMeter meter;
-    store_frame(solver, setup, folder, scene_hash, 1, 0.0, rest);
+    store_frame(solver, setup, folder, 1, 0.0, rest);
     const Diagnostics<3> diagnostics = compute_diagnostics(solver);
     report.set_simulated(1, 0.0, {}, diagnostics, compute_mass_account(solver, diagnostics.mass), ledger_of(solver),
                          to_body_poses(solver.colliders()), meter.finish({folder.particles(1)}));
+    store_checkpoint(solver, folder, scene_hash, 1, 0.0);
   }
 
   while (frame < options.frames.last) {
@@ -147,12 +154,29 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
           fmt::format("{}; frames 1 to {} are kept in {}", error.what(), frame - 1, folder.particles().string()));
     }
     const double time = (frame - 1) / scene.shot.fps;
-    store_frame(solver, setup, folder, scene_hash, frame, time, rest);
+    store_frame(solver, setup, folder, frame, time, rest);
     const Diagnostics<3> diagnostics = compute_diagnostics(solver);
     report.set_simulated(frame, time, statistics, diagnostics, compute_mass_account(solver, diagnostics.mass),
-                         ledger_of(solver), to_body_poses(solver.colliders()),
-                         meter.finish({folder.particles(frame), folder.checkpoint(frame)}));
+                         ledger_of(solver), to_body_poses(solver.colliders()), meter.finish({folder.particles(frame)}));
+    store_checkpoint(solver, folder, scene_hash, frame, time);
   }
+}
+
+/// Of all that the particles depend on: the settings, the files that they name, and what follows from the length of the
+/// shot. How colliders look is left out.
+std::uint64_t hash_simulation(const Scene& scene, const SimulationSetup& setup) {
+  Scene bare = scene;
+  for (ColliderSettings& c : bare.colliders) {
+    const ColliderSettings plain;
+    c.colour = plain.colour;
+    c.material = plain.material;
+    c.roughness = plain.roughness;
+  }
+  std::uint64_t hash = hash_bytes(version, hash_bytes(write_section(bare, SceneSection::simulation)));
+  for (const BodySettings& b : scene.bodies) hash = hash_bytes(read_file(find_mesh(scene, b.mesh)), hash);
+  for (const ColliderSettings& c : scene.colliders)
+    if (c.mesh != "ground") hash = hash_bytes(read_file(find_mesh(scene, c.mesh)), hash);
+  return hash_bytes(fmt::format("{} {}", setup.parameters.sound_speed, setup.parameters.shear_wave_speed), hash);
 }
 
 }  // namespace
@@ -163,7 +187,7 @@ void simulate_frames(const Scene& scene, const OutputFolder& folder, const Stage
   for (const std::string& warning : setup.warnings) progress.message("warning: " + warning);
   create_directories_or_fail(folder.particles());
   create_directories_or_fail(folder.checkpoints());
-  const std::uint64_t scene_hash = hash_bytes(version, hash_bytes(write_section(scene, SceneSection::simulation)));
+  const std::uint64_t scene_hash = hash_simulation(scene, setup);
   // Before anything is written: resuming may be refused.
   const auto checkpoint = options.resume ? find_checkpoint(folder, scene_hash, progress) : std::nullopt;
   const std::string text = write_scene(scene);

@@ -21,6 +21,9 @@ ParticleFrame to_frame(const Solver<3, Real>& solver, double spacing, int frame,
   result.frame = frame;
   result.time = time;
   const std::size_t n = p.size();
+  const auto& materials = solver.materials();
+  const bool differ = std::any_of(materials.begin(), materials.end(),
+                                  [&](const Material& m) { return m.density != materials.front().density; });
   std::vector<std::size_t> by_id(n);
   std::iota(by_id.begin(), by_id.end(), std::size_t{0});
   std::sort(by_id.begin(), by_id.end(), [&](std::size_t a, std::size_t b) { return p.id[a] < p.id[b]; });
@@ -31,6 +34,7 @@ ParticleFrame to_frame(const Solver<3, Real>& solver, double spacing, int frame,
     result.density.push_back(static_cast<float>(p.density[i]));
     if (!p.temperature.empty()) result.temperature.push_back(static_cast<float>(p.temperature[i]));
     if (!p.viscosity.empty()) result.viscosity.push_back(p.viscosity[i]);
+    if (differ) result.masses.push_back(static_cast<float>(solver.mass(i)));
   }
   return result;
 }

@@ -17,6 +17,9 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <set>
+#include <sstream>
+#include <string_view>
 
 namespace smelt {
 
@@ -124,10 +127,6 @@ ParticleFrame to_frame(ParticleCloud cloud, int frame) {
   return out;
 }
 
-double mean_density(const ParticleFrame& frame) {
-  return std::accumulate(frame.density.begin(), frame.density.end(), 0.0) / static_cast<double>(frame.size());
-}
-
 ParticleFrame read_frame(const ParticleFile& file, double spacing, const SeriesOptions& options) {
   bool has_velocity = true;
   ParticleFrame frame;
@@ -136,7 +135,9 @@ ParticleFrame read_frame(const ParticleFile& file, double spacing, const SeriesO
     has_velocity = !cloud.velocity.empty();
     frame = to_frame(std::move(cloud), file.frame);
     frame.spacing = spacing;
-    frame.mass = mean_density(frame) * spacing * spacing * spacing;
+    for (const float density : frame.density)
+      frame.masses.push_back(static_cast<float>(static_cast<double>(density) * spacing * spacing * spacing));
+    frame.mass = frame.masses.empty() ? 0.0 : static_cast<double>(frame.masses.front());
   } else {
     frame = read_particles(file.path);
     if (frame.size() == 0) fail("{}: has no particles: there is nothing to make a surface of", file.path.string());
@@ -165,10 +166,35 @@ double estimate_spacing_of(const fs::path& path) {
   }
 }
 
-/// What the results depend on beside the particles, kept beside the surfaces.
-bool made_from_same(const fs::path& path, const std::string& settings) {
-  return fs::exists(path) && read_file(path) == settings;
-}
+/// settings.toml, beside the surfaces: what they depend on beside the particles, and which frames were made from that.
+class SeriesSettings {
+ public:
+  SeriesSettings(fs::path path, std::string text, bool resume) : path_(std::move(path)), text_(std::move(text)) {
+    if (!resume || !fs::exists(path_)) return;
+    const std::string old = read_file(path_);
+    const std::size_t end = old.find('\n');
+    if (!old.starts_with(heading) || old.substr(end + 1) != text_) return;
+    std::istringstream numbers(old.substr(heading.size(), end - heading.size()));
+    for (int frame; numbers >> frame;) made_.insert(frame);
+  }
+
+  bool made(int frame) const { return made_.contains(frame); }
+
+  /// Saved: what is cut off after it counts as not made.
+  void set_made(int frame, bool made) {
+    if (made)
+      made_.insert(frame);
+    else
+      made_.erase(frame);
+    write_file_atomically(path_, fmt::format("{}{}\n{}", heading, fmt::join(made_, " "), text_));
+  }
+
+ private:
+  static constexpr std::string_view heading = "# frames = ";
+  fs::path path_;
+  std::string text_;
+  std::set<int> made_;
+};
 
 }  // namespace
 
@@ -217,23 +243,23 @@ SeriesSummary surface_series(const std::vector<std::string>& names, const std::s
 
   const OutputFolder folder{summary.folder};
   create_directories_or_fail(folder.surfaces());
-  const fs::path settings_path = folder.surfaces() / "settings.toml";
   const std::string text =
       fmt::format("# spacing_m = {:.17g}, attributes = {}\n{}", summary.spacing,
                   options.attributes ? fmt::format("{}", fmt::join(*options.attributes, ",")) : "all",
                   write_section(settings, SceneSection::surface));
-  const bool keep = options.resume && made_from_same(settings_path, text);
-  write_file_atomically(settings_path, text);
+  SeriesSettings made_from(folder.surfaces() / "settings.toml", text, options.resume);
   for (const ParticleFile& file : files) {
     progress.update({"surface", file.frame, files.front().frame, files.back().frame, 0.0, ""});
     stop_if_asked(progress, "surface", file.frame);
-    if (keep && all_exist(surface_files(folder, file.frame, settings.surface_outputs))) {
+    if (made_from.made(file.frame) && all_exist(surface_files(folder, file.frame, settings.surface_outputs))) {
       ++summary.n_kept;
       continue;
     }
+    made_from.set_made(file.frame, false);
     const ParticleFrame particles = read_frame(file, summary.spacing, options);
     if (summary.spacing == 0.0) summary.spacing = particles.spacing;
     make_surface_files(file.path, particles, settings, folder, file.frame);
+    made_from.set_made(file.frame, true);
     ++summary.n_made;
   }
   return summary;

@@ -248,6 +248,11 @@ void validate_collider(const ColliderSettings& s, bool hot, const std::string& p
     refuse(!s.keyframes.empty(), ".keyframes");
     refuse(s.mass.has_value(), ".mass_kg");
     refuse(s.density.has_value(), ".density_kg_m3");
+    const PlacementSettings& p = s.placement;
+    if (p.scale || p.height || p.stand_at_y || !p.translate.isZero(0.0) || !p.rotate_deg.isZero(0.0))
+      errors.add(path + ".translate_m", "the ground is placed by its height alone: give ground_y_m, or a mesh");
+  } else if (s.ground_height != 0.0) {
+    errors.add(path + ".ground_y_m", "is of the `ground`; a mesh is placed with translate_m or stand_at_y_m");
   }
   if (s.mass && s.density)
     errors.add(path + ".density_kg_m3", "give mass_kg or density_kg_m3, not both: one follows from the other");

@@ -28,6 +28,11 @@ void check_options(const SurfacingOptions& o) {
         "surfacing: kernel_over_spacing is {}: it must lie between 0.5, below which particles do not meet, and 4; 1 is "
         "usual",
         o.kernel_over_spacing);
+  if (o.cell_over_spacing > 1.5 * o.kernel_over_spacing)
+    fail(
+        "surfacing: cell_over_spacing is {} and kernel_over_spacing {}: cells wider than one and a half kernels pass "
+        "particles by; take smaller cells",
+        o.cell_over_spacing, o.kernel_over_spacing);
   if (!(o.thin_feature_gain >= 0.0 && o.thin_feature_gain <= 2.0))
     fail("surfacing: thin_feature_gain is {}: it must lie between 0 and 2; 1 keeps the volume of drops",
          o.thin_feature_gain);
@@ -55,7 +60,8 @@ void check_particles(const ParticleFrame& p) {
 std::vector<float> sorted_volumes(const ParticleFrame& particles, const ParticleBins& bins) {
   std::vector<float> volume(particles.size());
   parallel_for_each(volume.size(), [&](std::size_t j) {
-    volume[j] = static_cast<float>(particles.mass / particles.density[bins.index[j]]);
+    const std::size_t i = bins.index[j];
+    volume[j] = static_cast<float>(particles.mass_of(i) / particles.density[i]);
   });
   return volume;
 }

@@ -59,6 +59,21 @@ double volume_ratio(const ParticleFrame& frame, const SurfacingOptions& options 
   return compute_volume(surface.mesh) / (static_cast<double>(frame.size()) * spacing * spacing * spacing);
 }
 
+// Of two materials each particle stands for the same volume: the heavier half is as large as the lighter one.
+TEST(Surface, ParticlesOfTwoDensitiesCountByTheirOwnMass) {
+  ParticleFrame frame = make_ball(6.0);
+  const TriangleMesh uniform = build_surface(frame, {}).mesh;
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    const float factor = frame.position[i][0] < 0.0 ? 3.0f : 1.0f;
+    frame.density[i] *= factor;
+    frame.masses.push_back(static_cast<float>(frame.mass) * factor);
+  }
+  const TriangleMesh mixed = build_surface(frame, {}).mesh;
+  ASSERT_EQ(mixed.triangles, uniform.triangles);
+  for (std::size_t v = 0; v < mixed.vertices.size(); ++v)
+    EXPECT_LT((mixed.vertices[v] - uniform.vertices[v]).norm(), 1e-4 * frame.spacing);
+}
+
 TEST(Surface, ABallOfTenThousandParticlesHasItsRadiusVolumeAndNormals) {
   const double radius = std::cbrt(3.0 * 10000.0 / (4.0 * std::numbers::pi));
   const ParticleFrame frame = make_ball(radius);
