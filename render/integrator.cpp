@@ -76,8 +76,14 @@ RayPacket rays_of(const VertexPacket& vertices, Ray Vertex::*ray) {
 
 void aim_at_light(const ShadingScene& scene, const SurfacePoint& point, const LightSample& light, float time,
                   Vertex& vertex) {
-  vertex.shadow = ray_from(scene, point, light.direction, light.distance * 0.999f);
+  vertex.shadow = ray_from(scene, point, light.direction, light.distance);
   vertex.shadow.time = time;
+  if (!std::isfinite(light.distance)) return;
+  // From where the ray was lifted to: aimed as from the point itself it would end behind what is near and glows.
+  const Vec3f to = point.position + light.direction * light.distance - vertex.shadow.origin;
+  const float distance = to.norm();
+  vertex.shadow.direction = to / distance;
+  vertex.shadow.t_far = 0.999f * distance;
 }
 
 /// A white diffusing body; `share(cosine)` is what of the light from there comes through its coat.

@@ -105,8 +105,9 @@ TEST(Glow, SphereShowsItsBlackBody) {
 }
 
 /// Irradiance of a floor under a uniformly glowing sphere of radiance L: pi L (R/d)^2 at its foot, by drawn lights and
-/// rays together.
-TEST(Glow, SphereLightsTheFloorAsTheoryHasIt) {
+/// rays together, over what it is. Small in a large scene, it is as near as a few hundred times what rays start off
+/// their surface.
+double light_under_a_sphere(double size) {
   RenderScene scene = white_room(9, 9);
   scene.sky = {Vec3f::Zero(), Vec3f::Zero(), Vec3f::Zero()};
   scene.camera.eye = Vec3(0.0, 0.5, 4.0);
@@ -116,11 +117,18 @@ TEST(Glow, SphereLightsTheFloorAsTheoryHasIt) {
   scene.look.specular = 0.0f;
   scene.look.cold.base_colour = Vec3f::Zero();
   scene.look.black_body = BlackBodyLook{1.0f, 100.0f};
-  SurfaceMesh ball = make_sphere(0.5, Vec3(0.0, 1.5, 0.0), 64);
+  SurfaceMesh ball = make_sphere(0.5 * size, Vec3(0.0, 1.5 * size, 0.0), 64);
   ball.temperature.assign(ball.mesh.vertices.size(), 1300.0f);
   const double radiance = (BlackBodyTable()(1300.0f) / 100.0f).x();
   const double expected = 0.5 * radiance * (0.5 / 1.5) * (0.5 / 1.5);
-  EXPECT_NEAR(radiance_at(trace(ball, scene, samples(1024)), 40).x(), expected, 0.01 * expected);
+  ColliderView far;
+  far.mesh = {{Vec3(100, 0, 0), Vec3(101, 0, 0), Vec3(100, 0, 1)}, {{0, 1, 2}}};
+  scene.colliders.push_back(far);
+  return radiance_at(trace(ball, scene, samples(1024)), 40).x() / expected;
+}
+TEST(Glow, SphereLightsTheFloorAsTheoryHasIt) {
+  EXPECT_NEAR(light_under_a_sphere(1.0), 1.0, 0.01);
+  EXPECT_NEAR(light_under_a_sphere(0.05), 1.0, 0.02);
 }
 
 /// Deviation of the picture from its mean over seeds, at n and 16 n samples: a quarter, or less as the samples are well
