@@ -91,7 +91,7 @@ template <typename Share>
 void scatter_diffuse(const ShadingScene& scene, const SurfacePoint& point, float time, const Share& share,
                      Sample2 at_light, float which_light, Sample2 direction, Vertex& vertex) {
   if (scene.lights().any()) {
-    const LightSample light = scene.sample_light(point.position, at_light, which_light);
+    const LightSample light = scene.sample_light(point.position, at_light, which_light, time);
     const float cos_in = point.normal.dot(light.direction);
     if (light.pdf > 0.0f && cos_in > 0.0f) {
       const float chance = power_heuristic(light.pdf, cos_in / pi_f);
@@ -140,7 +140,7 @@ void scatter_mirror(const ShadingScene& scene, const SurfacePoint& point, const 
   const float alpha = ggx_alpha(point.roughness);
   const Mirror mirror(scene, point, wo.z());
   if (scene.lights().any()) {
-    const LightSample light = scene.sample_light(point.position, at_light, which_light);
+    const LightSample light = scene.sample_light(point.position, at_light, which_light, time);
     const Vec3f to_light = frame.to_local(light.direction);
     if (light.pdf > 0.0f && to_light.z() > 0.0f) {
       const float chance = power_heuristic(light.pdf, ggx_reflection_pdf(to_light, wo, alpha));
@@ -165,7 +165,7 @@ void end_at_surface(const ShadingScene& scene, const SurfacePoint& point, float 
   const bool lit = scene.lights().any(), sky = scene.lights().has_sky();
   const float to_light = lit ? (sky ? 0.5f : 1.0f) : 0.0f;
   if (which.v < to_light) {
-    const LightSample light = scene.sample_light(point.position, where, which.u);
+    const LightSample light = scene.sample_light(point.position, where, which.u, time);
     const float cos_in = point.normal.dot(light.direction);
     if (light.pdf <= 0.0f || cos_in <= 0.0f) return;
     vertex.direct = light.radiance * (cos_in / (pi_f * light.pdf * to_light));
@@ -200,17 +200,22 @@ class PathPacket {
   const ColourPacket& trace() {
     for (int bounce = 1;; ++bounce) {
       const bool last = bounce == options_.n_bounces;
-      if (!meet_surfaces(bounce, last)) return radiance_;
+      if (!meet_surfaces(bounce, last ? Then::end : Then::go_on)) return radiance_;
       const auto blocked = scene_.occluded(rays_of(vertices_, &Vertex::shadow));
       for (std::size_t i = 0; i < samples_.size(); ++i)
         if (vertices_[i].shadow.active && !blocked[i]) radiance_[i] += carried_[i].cwiseProduct(vertices_[i].direct);
-      if (last) return radiance_;
+      if (!last) continue;
+      meet_surfaces(bounce + 1,
+                    Then::stop);  // what the last metals mirror: lamps, sky and glow, but no surface's light
+      return radiance_;
     }
   }
 
  private:
+  enum class Then { go_on, end, stop };  ///< of the surfaces met: leave them, leave metals alone, or leave none
+
   /// Adds what the rays meet, and makes those surfaces the new vertices; false where none is left.
-  bool meet_surfaces(int bounce, bool last) {
+  bool meet_surfaces(int bounce, Then then) {
     RayPacket rays = rays_of(vertices_, &Vertex::ray);
     std::array<LampHit, packet_size> lamps;
     bool any = false;
@@ -241,7 +246,8 @@ class PathPacket {
       radiance_[i] += throughput_[i].cwiseProduct(seen);
       if (point.fade >= 1.0f) continue;
       throughput_[i] *= 1.0f - point.fade;
-      leave_surface(i, rays[i], point, bounce, last);
+      if (then == Then::stop) continue;
+      leave_surface(i, rays[i], point, bounce, then == Then::end);
       any = true;
     }
     return any;

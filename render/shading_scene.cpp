@@ -92,14 +92,21 @@ GlowLight ShadingScene::gather_glow() const {
   return GlowLight(power, std::move(area), middle);
 }
 
-LightSample ShadingScene::sample_light(const Vec3f& point, Sample2 where, float which) const {
+LightSample ShadingScene::sample_light(const Vec3f& point, Sample2 where, float which, float time) const {
   LightSample sample = lights_.sample(point, where, which);
   if (!sample.glow) return sample;
   const MeshPoint at = *sample.glow;
   const auto& t = fluid_.mesh.triangles[at.triangle];
-  const Vec3f to_place = fluid_position(at) - point;
-  const Vec3f edge1 = (fluid_.mesh.vertices[t[1]] - fluid_.mesh.vertices[t[0]]).cast<float>();
-  const Vec3f edge2 = (fluid_.mesh.vertices[t[2]] - fluid_.mesh.vertices[t[0]]).cast<float>();
+  Vec3f to_place = fluid_position(at) - point;
+  Vec3f edge1 = (fluid_.mesh.vertices[t[1]] - fluid_.mesh.vertices[t[0]]).cast<float>();
+  Vec3f edge2 = (fluid_.mesh.vertices[t[2]] - fluid_.mesh.vertices[t[0]]).cast<float>();
+  if (scene_.camera.shutter > 0.0 && !fluid_.velocity.empty()) {  // where the rays find it at that time
+    const float since = (time - 0.5f) * static_cast<float>(scene_.camera.shutter);
+    const Vec3f way[3] = {since * fluid_.velocity[t[0]], since * fluid_.velocity[t[1]], since * fluid_.velocity[t[2]]};
+    to_place += (1.0f - at.u - at.v) * way[0] + at.u * way[1] + at.v * way[2];
+    edge1 += way[1] - way[0];
+    edge2 += way[2] - way[0];
+  }
   sample.distance = to_place.norm();
   if (sample.distance <= 0.0f) return {};
   sample.direction = to_place / sample.distance;

@@ -53,8 +53,8 @@ class ShadingScene {
   std::array<bool, packet_size> occluded(const RayPacket& rays) const;
   /// The surface at a mesh hit; `relief`: with the normal that a crust's relief gives it.
   SurfacePoint resolve(const Ray& ray, const RayHit& hit, bool relief = false) const;
-  /// A light's direction as seen from a surface, with what it sends.
-  LightSample sample_light(const Vec3f& point, Sample2 where, float which) const;
+  /// A light's direction as seen from a surface, with what it sends; a glow is where it is at `time` of the shutter.
+  LightSample sample_light(const Vec3f& point, Sample2 where, float which, float time) const;
   /// Radiance that the camera sees behind everything.
   Vec3f background(const Vec3f& direction) const;
 

@@ -107,7 +107,7 @@ TEST(Glow, SphereShowsItsBlackBody) {
 /// Irradiance of a floor under a uniformly glowing sphere of radiance L: pi L (R/d)^2 at its foot, by drawn lights and
 /// rays together, over what it is. Small in a large scene, it is as near as a few hundred times what rays start off
 /// their surface.
-double light_under_a_sphere(double size) {
+double light_under_a_sphere(double size, float fall = 0.0f) {
   RenderScene scene = white_room(9, 9);
   scene.sky = {Vec3f::Zero(), Vec3f::Zero(), Vec3f::Zero()};
   scene.camera.eye = Vec3(0.0, 0.5, 4.0);
@@ -121,6 +121,10 @@ double light_under_a_sphere(double size) {
   ball.temperature.assign(ball.mesh.vertices.size(), 1300.0f);
   const double radiance = (BlackBodyTable()(1300.0f) / 100.0f).x();
   const double expected = 0.5 * radiance * (0.5 / 1.5) * (0.5 / 1.5);
+  if (fall > 0.0f) {
+    scene.camera.shutter = 0.25;
+    ball.velocity.assign(ball.mesh.vertices.size(), Vec3f(0.0f, -fall, 0.0f));
+  }
   ColliderView far;
   far.mesh = {{Vec3(100, 0, 0), Vec3(101, 0, 0), Vec3(100, 0, 1)}, {{0, 1, 2}}};
   scene.colliders.push_back(far);
@@ -129,6 +133,27 @@ double light_under_a_sphere(double size) {
 TEST(Glow, SphereLightsTheFloorAsTheoryHasIt) {
   EXPECT_NEAR(light_under_a_sphere(1.0), 1.0, 0.01);
   EXPECT_NEAR(light_under_a_sphere(0.05), 1.0, 0.02);
+}
+
+// From d = 1.75 to 1.25 while the shutter is open: the mean of 1/d^2 is 1.0286 times that in the middle.
+TEST(Glow, AFallingSphereLightsTheFloorAllTheWay) {
+  EXPECT_NEAR(light_under_a_sphere(1.0, 2.0f), 1.0286, 0.01);
+}
+
+// White wax on a mirror in a white room: what the mirror shows of the room reaches the wax.
+TEST(Furnace, AMetalMetLastShowsTheRoom) {
+  RenderScene scene = white_room(64, 64);
+  ColliderView mirror;
+  mirror.mesh = {{Vec3(-9, -1.5, -9), Vec3(-9, -1.5, 9), Vec3(9, -1.5, 9), Vec3(9, -1.5, -9)}, {{0, 1, 2}, {0, 2, 3}}};
+  mirror.material = MaterialKind::metal;
+  mirror.colour = Vec3f::Ones();
+  mirror.roughness = 0.02f;
+  scene.colliders.push_back(mirror);
+  const SurfaceMesh ball = make_sphere(1.0, Vec3::Zero(), 64);
+  const double one = mean_of_fluid(trace(ball, scene, samples(64, 1))).x();
+  const double two = mean_of_fluid(trace(ball, scene, samples(64, 2))).x();
+  EXPECT_GT(one, 0.85);
+  EXPECT_NEAR(one, two, 0.12);
 }
 
 /// Deviation of the picture from its mean over seeds, at n and 16 n samples: a quarter, or less as the samples are well
