@@ -9,6 +9,8 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 namespace smelt {
 
@@ -38,6 +40,15 @@ struct CameraFrame {
   Vec3f direction(double x, double y) const {
     const Vec3 d = forward + right * ((x - half_width_) / pixels_per_x) - up * ((y - half_height_) / pixels_per_x);
     return d.normalized().cast<float>();
+  }
+
+  /// Where a point is in the picture, in pixels from the top left corner; nothing where it is behind the eye.
+  std::optional<std::pair<double, double>> project(const Vec3& point) const {
+    const Vec3 d = point - eye;
+    const double depth = d.dot(forward);
+    if (!(depth > 0.0)) return std::nullopt;
+    return std::pair(half_width_ + d.dot(right) / depth * pixels_per_x,
+                     half_height_ - d.dot(up) / depth * pixels_per_x);
   }
 
   /// A ray through a point of the lens, relative to the eye; `direction` is that through the middle of the lens. Rays

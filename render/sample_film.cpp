@@ -28,6 +28,7 @@ struct Glimpse {
   float fade = 0.0f;  ///< of the floor into the backdrop; 1: nothing of it shows
   Vec3f normal = Vec3f::Zero();
   Vec3f position = Vec3f::Zero();
+  bool speck = false;  ///< some fluid is in the pixel, though not in its middle
 };
 
 std::vector<Glimpse> glance(const ShadingScene& scene, const CameraFrame& camera, const Film& film) {
@@ -57,6 +58,17 @@ bool is_mesh(SurfaceKind kind) {
   return kind == SurfaceKind::fluid || kind == SurfaceKind::collider;
 }
 
+/// Drops smaller than a pixel slip between the rays through pixels' middles: where their vertices are is looked at too.
+void find_specks(const ShadingScene& scene, const CameraFrame& camera, const Film& film,
+                 std::vector<Glimpse>& glimpses) {
+  for (const Vec3& vertex : scene.fluid().mesh.vertices) {
+    const auto at = camera.project(vertex);
+    if (!at || !(at->first >= 0.0 && at->first < film.width && at->second >= 0.0 && at->second < film.height)) continue;
+    Glimpse& glimpse = glimpses[film.index(static_cast<int>(at->first), static_cast<int>(at->second))];
+    glimpse.speck = !is_mesh(glimpse.kind);
+  }
+}
+
 /// Whether two neighbouring pixels show different things, or a sharp fold of one.
 bool differ(const Glimpse& a, const Glimpse& b, float pixel_angle) {
   if (!is_mesh(a.kind) && !is_mesh(b.kind)) return false;
@@ -80,7 +92,8 @@ int samples_at(const std::vector<Glimpse>& glimpses, const Film& film, int x, in
   const Glimpse& here = glimpses[film.index(x, y)];
   for (int j = std::max(0, y - 1); j <= std::min(film.height - 1, y + 1); ++j) {
     for (int i = std::max(0, x - 1); i <= std::min(film.width - 1, x + 1); ++i) {
-      if (differ(here, glimpses[film.index(i, j)], pixel_angle)) return std::max(samples, least_silhouette_samples);
+      const Glimpse& beside = glimpses[film.index(i, j)];
+      if (beside.speck || differ(here, beside, pixel_angle)) return std::max(samples, least_silhouette_samples);
     }
   }
   return plain_samples(here, samples);
@@ -90,7 +103,8 @@ int samples_at(const std::vector<Glimpse>& glimpses, const Film& film, int x, in
 bool shows_mesh(const std::vector<Glimpse>& glimpses, const Film& film, const Tile& tile) {
   for (int y = std::max(0, tile.rows().begin() - 1); y < std::min(film.height, tile.rows().end() + 1); ++y) {
     for (int x = std::max(0, tile.cols().begin() - 1); x < std::min(film.width, tile.cols().end() + 1); ++x) {
-      if (is_mesh(glimpses[film.index(x, y)].kind)) return true;
+      const Glimpse& glimpse = glimpses[film.index(x, y)];
+      if (glimpse.speck || is_mesh(glimpse.kind)) return true;
     }
   }
   return false;
@@ -237,7 +251,8 @@ class TileTracer {
 Film sample_film(const ShadingScene& scene, const RenderOptions& options, std::int32_t frame) {
   const CameraFrame camera(scene.view().camera);
   Film film(scene.view().camera.width, scene.view().camera.height, options.layers);
-  const std::vector<Glimpse> glimpses = glance(scene, camera, film);
+  std::vector<Glimpse> glimpses = glance(scene, camera, film);
+  find_specks(scene, camera, film, glimpses);
   const float pixel_angle = 1.0f / static_cast<float>(camera.pixels_per_x);
   const std::uint32_t seed =
       options.moving_noise ? hash_combine(options.seed, static_cast<std::uint32_t>(frame)) : hash_u32(options.seed);

@@ -59,6 +59,7 @@ class ShadingScene {
   Vec3f background(const Vec3f& direction) const;
 
   const RenderScene& view() const { return scene_; }
+  const SurfaceMesh& fluid() const { return fluid_; }
   const LightSet& lights() const { return lights_; }
   const CoatAlbedo& coat_albedo() const { return coat_albedo_; }
   const CoatAlbedo& mirror_albedo() const { return mirror_albedo_; }

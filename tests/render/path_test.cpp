@@ -135,6 +135,30 @@ TEST(Glow, SphereLightsTheFloorAsTheoryHasIt) {
   EXPECT_NEAR(light_under_a_sphere(0.05), 1.0, 0.02);
 }
 
+// A drop a third of a pixel wide, wherever it is in the pixel: as bright as the area that it covers.
+TEST(Film, ADropSmallerThanAPixelIsNeitherLostNorDimmed) {
+  RenderScene scene = white_room(48, 48);
+  scene.sky = {Vec3f::Zero(), Vec3f::Zero(), Vec3f::Zero()};
+  scene.backdrop = {};
+  scene.show_environment = true;
+  scene.camera.eye = Vec3(0.0, 0.0, 10.0);
+  scene.camera.target = Vec3::Zero();
+  scene.camera.vertical_fov_deg = 30.0;
+  scene.look.black_body = BlackBodyLook{1.0f, 100.0f};
+  scene.look.cold.base_colour = scene.look.hot.base_colour = Vec3f::Zero();
+  scene.look.specular = 0.0f;
+  const double pixel = 2.0 * 10.0 * std::tan(15.0 * M_PI / 180.0) / 48.0, radius = pixel / 6.0;
+  const double expected = (BlackBodyTable()(1300.0f) / 100.0f).x() * M_PI / 36.0;
+  for (const double offset : {0.2, 0.35, 0.5, 0.65, 0.8}) {
+    SurfaceMesh drop = make_sphere(radius, Vec3(pixel * offset, pixel * (0.9 - 0.7 * offset), 0.0), 16);
+    drop.temperature.assign(drop.mesh.vertices.size(), 1300.0f);
+    double sum = 0.0;
+    const Film film = trace(drop, scene, samples(64));
+    for (std::size_t i = 0; i < film.size(); ++i) sum += radiance_at(film, i).x();
+    EXPECT_NEAR(sum, expected, 0.35 * expected) << offset;
+  }
+}
+
 // From d = 1.75 to 1.25 while the shutter is open: the mean of 1/d^2 is 1.0286 times that in the middle.
 TEST(Glow, AFallingSphereLightsTheFloorAllTheWay) {
   EXPECT_NEAR(light_under_a_sphere(1.0, 2.0f), 1.0286, 0.01);
