@@ -55,7 +55,7 @@ std::optional<MassAccount> compute_mass_account(const Solver<3, Real>& solver, d
 /// What a stage cost for one frame.
 struct StageCost {
   double seconds = 0.0;
-  std::uintmax_t bytes = 0;  ///< written
+  std::uintmax_t bytes = 0;  ///< written, checkpoints left out
 };
 
 /// Keeps run.json up to date: each set_... replaces that stage of that frame and saves, so that a killed run leaves a
