@@ -111,7 +111,7 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
       for (int a = 0; a < Dim; ++a) sum[a] = hn::MulAdd(along, x_ij[a], sum[a]);
     };
     Real total[n_sums];
-    sum_row(lists.read(i, buffer.data()), total, add_pairs);
+    sum_row<n_sums>(lists.read(i, buffer.data()), total, add_pairs);
     for (int a = 0; a < Dim; ++a) {
       acceleration[i - begin][a] = total[a];
       if constexpr (with_stress)
@@ -156,7 +156,7 @@ void gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& l
       sum[Dim] = hn::MulAdd(weight, v_x, sum[Dim]);
     };
     Real total[Dim + 1];  // the force and the energy
-    sum_row(lists.read(i, buffer.data()), total, add_pairs);
+    sum_row<Dim + 1>(lists.read(i, buffer.data()), total, add_pairs);
     std::copy_n(total, Dim, acceleration[i - begin].begin());
     energy_rate[i - begin] = Real(0.5) * total[Dim];
   }

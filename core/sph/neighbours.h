@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <immintrin.h>
 #include <memory_resource>
 #include <span>
 #include <vector>
@@ -76,10 +77,13 @@ struct NeighbourLists {
   std::vector<std::int32_t> row(std::size_t i) const;
 
  private:
+  /// By hand: the compiler takes four scalar instructions a place.
   static void spell_out(std::int32_t begin, const std::uint8_t* place, std::int32_t* out) {
-    std::array<std::uint8_t, step> places;  // of its own: bytes might be anything, even what is written
-    std::copy_n(place, step, places.begin());
-    for (std::size_t k = 0; k < step; ++k) out[k] = begin + places[k];
+    static_assert(step == 16);
+    const __m256i first = _mm256_set1_epi32(begin);
+    const __m128i low = _mm_loadu_si128(reinterpret_cast<const __m128i*>(place)), high = _mm_srli_si128(low, 8);
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm256_add_epi32(first, _mm256_cvtepu8_epi32(low)));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + 8), _mm256_add_epi32(first, _mm256_cvtepu8_epi32(high)));
   }
 };
 

@@ -176,25 +176,35 @@ HWY_INLINE void fold_row_of_whole_groups(const NeighbourLists::Row& row, hn::Vec
   for (int s = 0; s < n_sums; ++s) folded[s] = hn::Add(hn::LowerHalf(half, sums[s]), hn::UpperHalf(half, sums[s]));
 }
 
-/// The same in vectors of half as many lanes. Unrolled it would take a fifth longer: there are half as many registers.
+/// Sums over every other vector of half as many lanes, from vector `first` on.
+template <int n_sums, typename Real, typename Add>
+HWY_INLINE void sum_half_groups(const NeighbourLists::Row& row, std::size_t first, hn::Vec<HalfTag<Real>>* out,
+                                const Add& add) {
+  Simd<Real> sums[n_sums];
+#pragma GCC unroll 32
+  for (int s = 0; s < n_sums; ++s) sums[s] = hn::Zero(HalfTag<Real>());
+  for (std::size_t k = first * lanes<Real>; k < row.neighbours.size(); k += pair_lanes<Real>)
+    add(row.padded.data() + k, sums);
+#pragma GCC unroll 32
+  for (int s = 0; s < n_sums; ++s) out[s] = sums[s];
+}
+
+/// The same as the sums over whole groups, folded.
 template <int n_sums, typename Real, typename Add>
 HWY_INLINE void fold_row_of_half_groups(const NeighbourLists::Row& row, hn::Vec<HalfTag<Real>>* folded,
                                         const Add& add) {
-  const HalfTag<Real> half;
-  for (std::size_t part = 0; part < 2; ++part) {
-    Simd<Real> sums[n_sums];
-    for (auto& sum : sums) sum = hn::Zero(half);
-    for (std::size_t k = part * lanes<Real>; k < row.neighbours.size(); k += pair_lanes<Real>)
-      add(row.padded.data() + k, sums);
-    for (int s = 0; s < n_sums; ++s) folded[s] = part == 0 ? sums[s] : hn::Add(folded[s], sums[s]);
-  }
+  hn::Vec<HalfTag<Real>> second[n_sums];
+  sum_half_groups<n_sums, Real>(row, 0, folded, add);
+  sum_half_groups<n_sums, Real>(row, 1, second, add);
+#pragma GCC unroll 32
+  for (int s = 0; s < n_sums; ++s) folded[s] = hn::Add(folded[s], second[s]);
 }
 
 /// Adds up what `add(index, sums)` adds to `sums`, vectors of lanes, for every vector of neighbours in `row`; vectors
 /// of padding alone are left out, as they would add nothing. The same bytes on every machine: sums are folded to half
-/// of pair_lanes, then these are summed, whatever the length of a vector.
+/// of pair_lanes, then these are summed, whatever the length of a vector. `total` has n_sums entries.
 template <int n_sums, typename Real, typename Add>
-HWY_INLINE void sum_row(const NeighbourLists::Row& row, Real (&total)[n_sums], const Add& add) {
+HWY_INLINE void sum_row(const NeighbourLists::Row& row, Real* total, const Add& add) {
   constexpr int n_half = pair_lanes<Real> / 2, n_padded = (n_sums + n_half - 1) / n_half * n_half;
   const HalfTag<Real> half;
   hn::Vec<HalfTag<Real>> folded[n_padded];
@@ -206,6 +216,35 @@ HWY_INLINE void sum_row(const NeighbourLists::Row& row, Real (&total)[n_sums], c
   Real padded[n_padded];
   for (int s = 0; s < n_padded; s += n_half) hn::StoreU(sum_lanes(half, folded + s), half, padded + s);
   std::copy_n(padded, n_sums, total);
+}
+
+/// Some of the sums over a row: `add` as for sum_row. It must index its sums by what the compiler knows once it has
+/// unrolled loops of fixed length, not by a count that depends on another loop's, else they stay in memory.
+template <int n_sums, typename Add>
+struct SumGroup {
+  static constexpr int n = n_sums;
+  const Add& add;
+};
+
+template <int n_sums, typename Add>
+HWY_INLINE SumGroup<n_sums, Add> sum_group(const Add& add) {
+  return {add};
+}
+
+/// The sums of all groups one after another, to `total`: with 32 registers in one loop over the row, with 16 in a loop
+/// for each group, whose sums they hold then.
+template <typename Real, typename... Group>
+HWY_INLINE void sum_row_in_groups(const NeighbourLists::Row& row, Real* total, const Group&... group) {
+  if constexpr (lanes<Real> == pair_lanes<Real>) {
+    const auto add = [&](const std::int32_t* index, Simd<Real>* sums) HWY_ATTR __attribute__((always_inline)) {
+      int at = 0;
+      ((group.add(index, sums + at), at += Group::n), ...);
+    };
+    sum_row<(Group::n + ...)>(row, total, add);
+  } else {
+    int at = 0;
+    ((sum_row<Group::n>(row, total + at, group.add), at += Group::n), ...);
+  }
 }
 
 /// What every pair needs of its neighbours.

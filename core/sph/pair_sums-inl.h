@@ -42,7 +42,7 @@ void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lis
       sum[1] = hn::Add(volume_w, sum[1]);
     };
     Real total[2];
-    sum_row(row, total, add_pairs);
+    sum_row<2>(row, total, add_pairs);
     const Real self = record_i[Fields::volume_at] * hn::GetLane(kernel.value(hn::Zero(d)));
     sums[i - begin].mass = total[0] + record_i[Fields::density_at] * self;
     sums[i - begin].volume = total[1] + self;
@@ -81,9 +81,12 @@ void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lis
     });                                                                                                                \
   }
 SMELT_INSTANTIATE(3, float, 3f)
+#if HWY_TARGET == HWY_STATIC_TARGET
+// Studies do not need the fastest instructions.
 SMELT_INSTANTIATE(3, double, 3d)
 SMELT_INSTANTIATE(2, double, 2d)
 SMELT_INSTANTIATE(1, double, 1d)
+#endif
 #undef SMELT_INSTANTIATE
 
 }  // namespace HWY_NAMESPACE

@@ -42,7 +42,7 @@ void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const Neighbour
       }
     };
     Real total[Dim + n_symmetric<Dim>];
-    sum_row(lists.read(i, buffer.data()), total, add_pairs);
+    sum_row<Dim + n_symmetric<Dim>>(lists.read(i, buffer.data()), total, add_pairs);
     std::copy_n(total, Dim, sums[i - begin].gradient.begin());
     std::copy_n(total + Dim, n_symmetric<Dim>, sums[i - begin].moment.begin());
   }
@@ -76,7 +76,7 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
       sum[0] = hn::NegMulAdd(weight, unexplained, sum[0]);
     };
     Real total[1];
-    sum_row(lists.read(i, buffer.data()), total, add_pairs);
+    sum_row<1>(lists.read(i, buffer.data()), total, add_pairs);
     sums[i - begin] = 2 * total[0];
   }
 }
@@ -98,9 +98,12 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
     });                                                                                                            \
   }
 SMELT_INSTANTIATE(3, float, 3f)
+#if HWY_TARGET == HWY_STATIC_TARGET
+// Studies do not need the fastest instructions.
 SMELT_INSTANTIATE(3, double, 3d)
 SMELT_INSTANTIATE(2, double, 2d)
 SMELT_INSTANTIATE(1, double, 1d)
+#endif
 #undef SMELT_INSTANTIATE
 
 }  // namespace HWY_NAMESPACE

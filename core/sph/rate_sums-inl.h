@@ -22,29 +22,32 @@ HWY_BEFORE_NAMESPACE();
 namespace smelt {
 namespace HWY_NAMESPACE {
 
-/// Where the first pass keeps its sums.
-template <int Dim>
+/// Where the first pass keeps its sums: those of the flow, of the neighbours' places and of heat.
+template <int Dim, bool with_stress, bool with_heat, bool with_xsph>
 struct RateIndex {
-  static constexpr int density_rate = 0, velocity_moment = 1, position_moment = velocity_moment + Dim * Dim,
-                       heat = position_moment + n_symmetric<Dim>, moment_trace = heat + 1,
-                       heat_imbalance = moment_trace + 1, xsph = heat_imbalance + Dim, n_sums = xsph + Dim;
+  static constexpr int density_rate = 0, velocity_moment = 1, xsph = velocity_moment + (with_stress ? Dim * Dim : 0),
+                       n_flow = xsph + (with_xsph ? Dim : 0);
+  static constexpr int position_moment = n_flow, n_places = with_stress || with_heat ? n_symmetric<Dim> : 0;
+  static constexpr int heat = n_flow + n_places, moment_trace = heat + 1, heat_imbalance = heat + 2,
+                       n_heat = with_heat ? 2 + Dim : 0, n_sums = heat + n_heat;
 };
 
-/// Adds sum V_j w (v_j - v_i) (x) grad_w_ij and sum V_j w (x_j - x_i) (x) grad_w_ij for a vector of neighbours,
-/// `weight` being V_j w F.
-template <int Dim, typename Real, bool with_velocity, typename Pair>
-HWY_INLINE void add_moments(const Pair& pair, Simd<Real> weight, Simd<Real>* velocity_moment,
-                            Simd<Real>* position_moment) {
-  // v_j - v_i = -v_ij and x_j - x_i = -x_ij: one sign for all.
+/// Adds sum V_j w (v_j - v_i) (x) grad_w_ij for a vector of neighbours, `weight` being V_j w F.
+template <int Dim, typename Real, typename Pair>
+HWY_INLINE void add_velocity_moment(const Pair& pair, Simd<Real> weight, Simd<Real>* moment) {
+  // v_j - v_i = -v_ij.
   for (int b = 0; b < Dim; ++b) {
     const auto weighted = hn::Mul(weight, pair.x_ij[b]);
-    if constexpr (with_velocity)
-      for (int a = 0; a < Dim; ++a)
-        velocity_moment[a * Dim + b] = hn::NegMulAdd(pair.v_ij[a], weighted, velocity_moment[a * Dim + b]);
-    for (int a = 0; a <= b; ++a) {
-      auto& moment = position_moment[symmetric_index<Dim>(a, b)];
-      moment = hn::NegMulAdd(pair.x_ij[a], weighted, moment);
-    }
+    for (int a = 0; a < Dim; ++a) moment[a * Dim + b] = hn::NegMulAdd(pair.v_ij[a], weighted, moment[a * Dim + b]);
+  }
+}
+
+/// Adds sum V_j w (x_j - x_i) (x) grad_w_ij.
+template <int Dim, typename Real, typename Pair>
+HWY_INLINE void add_position_moment(const Pair& pair, Simd<Real> weight, Simd<Real>* moment) {
+  for (int m = 0; m < n_symmetric<Dim>; ++m) {
+    const auto [a, b] = symmetric_entry<Dim>(m);
+    moment[m] = hn::NegMulAdd(pair.x_ij[a], hn::Mul(weight, pair.x_ij[b]), moment[m]);
   }
 }
 
@@ -63,10 +66,12 @@ SightedSums<Dim, Real> sighted_sums(const PairFields<Dim, Real>& fields, const P
     const auto eta_j = load_field<Fields::rest_viscosity_at>(records, stride, index);
     const auto sight = hn::Min(hn::Set(d, Real(1)), hn::Mul(sight_i, eta_j));
     const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(dot<Dim, Real>(pair.x_ij, pair.x_ij)));
-    add_moments<Dim, Real, true>(pair, hn::Mul(volume_f, sight), sum, sum + position_at);
+    const auto weight = hn::Mul(volume_f, sight);
+    add_velocity_moment<Dim, Real>(pair, weight, sum);
+    add_position_moment<Dim, Real>(pair, weight, sum + position_at);
   };
   Real total[position_at + n_symmetric<Dim>];
-  sum_row(row, total, add_pairs);
+  sum_row<position_at + n_symmetric<Dim>>(row, total, add_pairs);
   SightedSums<Dim, Real> sums;
   std::copy_n(total, Dim * Dim, sums.velocity_moment.begin());
   std::copy_n(total + position_at, n_symmetric<Dim>, sums.position_moment.begin());
@@ -74,7 +79,7 @@ SightedSums<Dim, Real> sighted_sums(const PairFields<Dim, Real>& fields, const P
 }
 
 /// A vector of neighbours as the sums of the first pass need them: a loop of its own finds this for a whole row, as one
-/// that did both would have more numbers in use than there are registers.
+/// that did both would have more numbers in use than there are registers (docs/performance.md).
 template <int Dim, typename Real>
 struct WeighedPairs {
   Simd<Real> x_ij[Dim], v_ij[Dim], r2;
@@ -102,14 +107,14 @@ HWY_INLINE void weigh_pairs(const PairKernel& kernel, const Real* record_i, cons
   }
 }
 
-/// Adds what neighbours conduct to the particle, and the moments that its balance takes, from their fields `heat_j`
-/// from heat_at on.
+/// Adds what neighbours conduct to the particle, then the trace and the imbalance that its balance takes, from their
+/// fields `heat_j` from heat_at on.
 template <int Dim, typename Real, HeatTerms heat_terms>
 HWY_INLINE void add_heat(const WeighedPairs<Dim, Real>& pair, const Real* record_i, const Simd<Real>* heat_j,
                          Simd<Real>* sum) {
   const Tag<Real> d;
   using Fields = PairFields<Dim, Real>;
-  using At = RateIndex<Dim>;
+  constexpr int heat = 0, moment_trace = 1, imbalance_at = 2;
   const auto of_i = [&](int field) HWY_ATTR { return hn::Set(d, record_i[field]); };
   const auto of_j = [&](int field) HWY_ATTR { return heat_j[field - Fields::heat_at]; };
   auto along_i = hn::Mul(pair.x_ij[0], of_i(Fields::balance_at));
@@ -122,10 +127,9 @@ HWY_INLINE void add_heat(const WeighedPairs<Dim, Real>& pair, const Real* record
   const auto unlimited = hn::Add(one, hn::Sub(along_i, along_j));
   const auto balance = hn::Min(hn::Max(unlimited, hn::Set(d, Real(0.2))), hn::Set(d, Real(1.8)));
   const auto balanced_f = hn::Mul(pair.volume_f, balance);
-  sum[At::moment_trace] = hn::NegMulAdd(balanced_f, pair.r2, sum[At::moment_trace]);
+  sum[moment_trace] = hn::NegMulAdd(balanced_f, pair.r2, sum[moment_trace]);
   const auto imbalance = hn::NegMulAdd(pair.volume_f, along_j, pair.volume_f);
-  for (int a = 0; a < Dim; ++a)
-    sum[At::heat_imbalance + a] = hn::MulAdd(imbalance, pair.x_ij[a], sum[At::heat_imbalance + a]);
+  for (int a = 0; a < Dim; ++a) sum[imbalance_at + a] = hn::MulAdd(imbalance, pair.x_ij[a], sum[imbalance_at + a]);
   const auto t_ij = hn::Sub(of_i(Fields::heat_at), of_j(Fields::heat_at));
   const auto inverse_trace = hn::Add(of_i(Fields::inverse_trace_at), of_j(Fields::inverse_trace_at));
   auto conducted = hn::Mul(hn::Mul(balanced_f, t_ij), inverse_trace);
@@ -134,13 +138,13 @@ HWY_INLINE void add_heat(const WeighedPairs<Dim, Real>& pair, const Real* record
     const auto l_sum = hn::Max(hn::Add(of_i(Fields::conductivity_at), l_j), hn::Set(d, Real(1e-30)));
     conducted = hn::Mul(conducted, hn::Div(hn::Add(l_j, l_j), l_sum));
   }
-  sum[At::heat] = hn::Add(conducted, sum[At::heat]);
+  sum[heat] = hn::Add(conducted, sum[heat]);
 }
 
 /// Its particle's rates from what was added up over a row.
 template <int Dim, typename Real, bool with_stress, bool with_heat, bool with_xsph>
 void write_rates(const Real* total, RateSums<Dim, Real>& out) {
-  using At = RateIndex<Dim>;
+  using At = RateIndex<Dim, with_stress, with_heat, with_xsph>;
   out.density_rate = total[At::density_rate];
   if constexpr (with_stress) std::copy_n(total + At::velocity_moment, Dim * Dim, out.velocity_moment.begin());
   if constexpr (with_stress || with_heat)
@@ -163,7 +167,7 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   const PairKernel kernel(h);
   constexpr bool with_heat = heat_terms != HeatTerms::none;
   using Fields = PairFields<Dim, Real>;
-  using At = RateIndex<Dim>;
+  using At = RateIndex<Dim, with_stress, with_heat, with_xsph>;
   const Real* records = fields.records.data();
   constexpr int stride = Fields::stride_of(with_stress);
   std::vector<std::int32_t> buffer(lists.room());
@@ -173,29 +177,41 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
     const Real* record_i = records + i * stride;
     [[maybe_unused]] auto thinnest = hn::Set(d, record_i[Fields::rest_viscosity_at]);
     const NeighbourLists::Row row = lists.read(i, buffer.data());
-    const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const WeighedPairs<Dim, Real>& pair = weighed[static_cast<std::size_t>(index - row.padded.data()) / lanes<Real>];
+    for (std::size_t k = 0; k < row.neighbours.size(); k += lanes<Real>)
+      weigh_pairs<PairKernel, Dim, Real, with_xsph>(kernel, record_i, records, stride, row.padded.data() + k,
+                                                    weighed[k / lanes<Real>]);
+    const auto weighed_at = [&](const std::int32_t* index) HWY_ATTR -> const WeighedPairs<Dim, Real>& {
+      return weighed[static_cast<std::size_t>(index - row.padded.data()) / lanes<Real>];
+    };
+    const auto add_flow = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const WeighedPairs<Dim, Real>& pair = weighed_at(index);
       sum[At::density_rate] = hn::MulAdd(pair.mass_f, dot<Dim, Real>(pair.v_ij, pair.x_ij), sum[At::density_rate]);
-      if constexpr (with_stress || with_heat)
-        add_moments<Dim, Real, with_stress>(pair, pair.volume_f, sum + At::velocity_moment, sum + At::position_moment);
-      if constexpr (with_sight && !with_heat)
-        thinnest = hn::Min(thinnest, load_field<Fields::rest_viscosity_at>(records, stride, index));
-      if constexpr (with_heat) {
-        constexpr int n_heat = with_sight ? Fields::rest_viscosity_at + 1 - Fields::heat_at : Fields::n_heat;
-        Simd<Real> heat_j[padded_fields(n_heat)];
-        load_fields<Fields::heat_at, n_heat>(records, stride, index, heat_j);
-        if constexpr (with_sight) thinnest = hn::Min(thinnest, heat_j[Fields::rest_viscosity_at - Fields::heat_at]);
-        add_heat<Dim, Real, heat_terms>(pair, record_i, heat_j, sum);
-      }
+      if constexpr (with_stress) add_velocity_moment<Dim, Real>(pair, pair.volume_f, sum + At::velocity_moment);
       if constexpr (with_xsph)
         for (int a = 0; a < Dim; ++a)
           sum[At::xsph + a] = hn::NegMulAdd(pair.v_ij[a], pair.xsph_weight, sum[At::xsph + a]);
     };
-    for (std::size_t k = 0; k < row.neighbours.size(); k += lanes<Real>)
-      weigh_pairs<PairKernel, Dim, Real, with_xsph>(kernel, record_i, records, stride, row.padded.data() + k,
-                                                    weighed[k / lanes<Real>]);
+    const auto add_places = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const WeighedPairs<Dim, Real>& pair = weighed_at(index);
+      add_position_moment<Dim, Real>(pair, pair.volume_f, sum);
+      if constexpr (with_sight && !with_heat)
+        thinnest = hn::Min(thinnest, load_field<Fields::rest_viscosity_at>(records, stride, index));
+    };
+    const auto add_heats = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      constexpr int n_heat = with_sight ? Fields::rest_viscosity_at + 1 - Fields::heat_at : Fields::n_heat;
+      Simd<Real> heat_j[padded_fields(n_heat)];
+      load_fields<Fields::heat_at, n_heat>(records, stride, index, heat_j);
+      if constexpr (with_sight) thinnest = hn::Min(thinnest, heat_j[Fields::rest_viscosity_at - Fields::heat_at]);
+      add_heat<Dim, Real, heat_terms>(weighed_at(index), record_i, heat_j, sum);
+    };
     Real total[At::n_sums];
-    sum_row(row, total, add_pairs);
+    const auto flow = sum_group<At::n_flow>(add_flow);
+    if constexpr (with_heat)
+      sum_row_in_groups(row, total, flow, sum_group<At::n_places>(add_places), sum_group<At::n_heat>(add_heats));
+    else if constexpr (with_stress)
+      sum_row_in_groups(row, total, flow, sum_group<At::n_places>(add_places));
+    else
+      sum_row_in_groups(row, total, flow);
     RateSums<Dim, Real>& out = sums[i - begin];
     write_rates<Dim, Real, with_stress, with_heat, with_xsph>(total, out);
     if constexpr (with_sight) {
@@ -208,7 +224,8 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   }
 }
 
-/// Picks the loop compiled for just the terms in use.
+/// Picks the loop compiled for just the terms in use. Double precision serves studies, not speed: there XSPH is always
+/// summed, and uniform heat is mixed heat whose pairs are multiplied by exactly 1.
 template <typename PairKernel, int Dim, typename Real>
 void select_rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, const PairTerms& terms,
                       double h, std::size_t begin, std::size_t end, RateSums<Dim, Real>* sums,
@@ -217,7 +234,9 @@ void select_rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists&
     rate_sums<PairKernel, Dim, Real, stress.value, sight.value, heat.value, xsph.value>(fields, lists, h, begin, end,
                                                                                         sums, sighted);
   };
+  constexpr bool few_loops = std::is_same_v<Real, double>;
   const auto with_xsph = [&](auto stress, auto sight, auto heat) HWY_ATTR {
+    if constexpr (few_loops) return run(stress, sight, heat, std::true_type{});
     terms.xsph ? run(stress, sight, heat, std::true_type{}) : run(stress, sight, heat, std::false_type{});
   };
   const auto with_heat = [&](auto stress, auto sight) HWY_ATTR {
@@ -225,7 +244,9 @@ void select_rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists&
       case HeatTerms::none:
         return with_xsph(stress, sight, std::integral_constant<HeatTerms, HeatTerms::none>{});
       case HeatTerms::uniform:
-        return with_xsph(stress, sight, std::integral_constant<HeatTerms, HeatTerms::uniform>{});
+        if constexpr (!few_loops)
+          return with_xsph(stress, sight, std::integral_constant<HeatTerms, HeatTerms::uniform>{});
+        [[fallthrough]];
       case HeatTerms::mixed:
         return with_xsph(stress, sight, std::integral_constant<HeatTerms, HeatTerms::mixed>{});
     }
