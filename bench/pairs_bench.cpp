@@ -52,8 +52,7 @@ Block make_jittered_block(std::size_t n_particles) {
     sorted.push_back(position[static_cast<std::size_t>(k)]);
   build_neighbour_lists<3>(sorted, reach, reach, pair_lanes<float>, block.lists);
   for (std::size_t i = 0; i < block.n; ++i) block.n_pairs += static_cast<double>(block.lists.row(i).size());
-  block.fields.stride = Fields::stride_of(true);
-  block.fields.records.resize(block.n * static_cast<std::size_t>(block.fields.stride));
+  block.fields.resize(block.n, true);
   for (float& value : block.fields.records) value = static_cast<float>(1.0 + jitter(random));
   for (std::size_t i = 0; i < block.n; ++i)
     for (int a = 0; a < 3; ++a) block.fields.record(i)[a] = static_cast<float>(sorted[i][a]);

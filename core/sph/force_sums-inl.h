@@ -24,12 +24,12 @@ namespace HWY_NAMESPACE {
 /// Hourglass control: what of the approach v_ij.x_ij = `v_x`, times the pair's viscosity, no velocity gradient of
 /// either particle sees. Where sight counts, the two sides are weighed by `scale_i` and `scale_j`.
 template <int Dim, typename Real, bool with_sight>
-HWY_INLINE Simd<Real> unseen_motion(const Neighbours<Dim, Real>& pair, const Real* record_i, const Simd<Real>* stress_j,
+HWY_INLINE Simd<Real> unseen_motion(const Neighbours<Dim, Real>& pair, const Real* stress_i, const Simd<Real>* stress_j,
                                     [[maybe_unused]] Simd<Real> scale_i, [[maybe_unused]] Simd<Real> scale_j,
                                     Simd<Real> v_x) {
   using Fields = PairFields<Dim, Real>;
-  const auto of_i = [&](int field) HWY_ATTR { return hn::Set(Tag<Real>(), record_i[field]); };
-  const auto of_j = [&](int field) HWY_ATTR { return stress_j[field - Fields::stress_at]; };
+  const auto of_i = [&](int field) HWY_ATTR { return hn::Set(Tag<Real>(), stress_i[field]); };
+  const auto of_j = [&](int field) HWY_ATTR { return stress_j[field]; };
   auto unseen_i = hn::Mul(of_i(Fields::hourglass_at), v_x), unseen_j = hn::Mul(of_j(Fields::hourglass_at), v_x);
   for (int m = 0; m < n_symmetric<Dim>; ++m) {
     const auto [a, b] = symmetric_entry<Dim>(m);
@@ -49,8 +49,8 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
   const PairKernel kernel(h);
   using Fields = PairFields<Dim, Real>;
   const Real* records = fields.records.data();
-  constexpr int stride = Fields::stride_of(with_stress);
   constexpr int way_at = Dim, n_sums = with_stress ? 2 * Dim : Dim;  // the force is first
+  [[maybe_unused]] const std::ptrdiff_t stresses_at = fields.stresses_at;
   const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
   // Pi_ij = -alpha c mu_ij / (0.5 (rho_i + rho_j)), mu_ij = h v_ij.x_ij / (r^2 + 0.01 h^2) where they approach.
   const auto damping =
@@ -59,7 +59,8 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
   const auto one = hn::Set(d, Real(1));
   std::vector<std::int32_t> buffer(lists.room());
   for (std::size_t i = begin; i < end; ++i) {
-    const Real* record_i = records + i * stride;
+    const Real* record_i = fields.record(i);
+    [[maybe_unused]] const Real* stress_i = with_stress ? fields.stress(i) : nullptr;
     const auto density_i = hn::Set(d, record_i[Fields::density_at]);
     const auto inverse_density_i = hn::Set(d, 1 / record_i[Fields::density_at]);
     // One load of four for the pressure and what sight takes.
@@ -68,10 +69,10 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
     [[maybe_unused]] const auto sight_of_i = hn::Set(d, static_cast<Real>(sight_of_thinner) * record_i[eta_at]);
     [[maybe_unused]] const auto sight_i = hn::Set(d, static_cast<Real>(sight_of_thinner) * record_i[eta_at + 1]);
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const Neighbours<Dim, Real> pair(record_i, records, stride, index);
+      const Neighbours<Dim, Real> pair(record_i, records, index);
       const auto &x_ij = pair.x_ij, &v_ij = pair.v_ij;
       Simd<Real> pressure_j[padded_fields(n_pressure)];
-      load_fields<pressure_at, n_pressure>(records, stride, index, pressure_j);
+      load_fields<Fields::record_size, n_pressure>(records, pressure_at, index, pressure_j);
       const auto specific_pressure_j = pressure_j[Fields::specific_pressure_at - pressure_at];
       const auto r2 = dot<Dim, Real>(x_ij, x_ij);
       const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(r2));
@@ -87,7 +88,7 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
       if constexpr (with_stress) {
         constexpr int n_stress = Fields::n_stress(with_hourglass);
         Simd<Real> stress_j[padded_fields(n_stress)];
-        load_fields<Fields::stress_at, n_stress>(records, stride, index, stress_j);
+        load_fields<Fields::record_size, n_stress>(records, stresses_at, index, stress_j);
         // m_j/(rho_i rho_j) = V_j/rho_i; times the sight of i, and of j.
         const auto scale = hn::Mul(volume_f, inverse_density_i);
         auto scale_i = scale, scale_j = scale;
@@ -103,7 +104,7 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
           sum[way_at + a] = hn::MulAdd(scale_i, x_ij[a], sum[way_at + a]);
         }
         if constexpr (with_hourglass) {
-          const auto unseen = unseen_motion<Dim, Real, with_sight>(pair, record_i, stress_j, scale_i, scale_j, v_x);
+          const auto unseen = unseen_motion<Dim, Real, with_sight>(pair, stress_i, stress_j, scale_i, scale_j, v_x);
           const auto strength = with_sight ? hourglass : hn::Mul(scale, hourglass);
           along = hn::MulAdd(hn::Mul(strength, hn::Mul(inverse, density_sum)), unseen, along);
         }
@@ -115,8 +116,7 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
     for (int a = 0; a < Dim; ++a) {
       acceleration[i - begin][a] = total[a];
       if constexpr (with_stress)
-        for (int b = 0; b < Dim; ++b)
-          acceleration[i - begin][a] += record_i[Fields::stress_at + a * Dim + b] * total[way_at + b];
+        for (int b = 0; b < Dim; ++b) acceleration[i - begin][a] += stress_i[a * Dim + b] * total[way_at + b];
     }
   }
 }
@@ -130,17 +130,16 @@ void gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& l
   const PairKernel kernel(h);
   using Fields = PairFields<Dim, Real>;
   const Real* records = fields.records.data();
-  constexpr int stride = Fields::stride_of(false);
   const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
   const auto alpha = hn::Set(d, static_cast<Real>(parameters.artificial_viscosity));
   const auto two_beta = hn::Set(d, static_cast<Real>(2.0 * parameters.quadratic_artificial_viscosity));
   std::vector<std::int32_t> buffer(lists.room());
   for (std::size_t i = begin; i < end; ++i) {
-    const Real* record_i = records + i * stride;
+    const Real* record_i = fields.record(i);
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const Neighbours<Dim, Real> pair(record_i, records, stride, index);
-      const auto specific_pressure_j = load_field<Fields::specific_pressure_at>(records, stride, index);
-      const auto sound_speed_j = load_field<Fields::sound_speed_at>(records, stride, index);
+      const Neighbours<Dim, Real> pair(record_i, records, index);
+      const auto specific_pressure_j = load_field<Dim, Real, Fields::specific_pressure_at>(fields, index);
+      const auto sound_speed_j = load_field<Dim, Real, Fields::sound_speed_at>(fields, index);
       const auto r2 = dot<Dim, Real>(pair.x_ij, pair.x_ij);
       const auto v_x = dot<Dim, Real>(pair.v_ij, pair.x_ij);
       // Twice c_ij and twice rho_ij: the halves cancel but for beta's.

@@ -34,7 +34,7 @@ HWY_INLINE void transpose_blocks(Simd<float>& row0, Simd<float>& row1, Simd<floa
 
 /// Fields [first, first + 4) of the records at `at`, one a lane.
 template <int n_lanes>
-HWY_INLINE void load_four_fields(const float* const (&at)[n_lanes], int first, Simd<float>* fields) {
+HWY_INLINE void load_four_fields(const float* const (&at)[n_lanes], std::ptrdiff_t first, Simd<float>* fields) {
   const Tag<float> d;
   const hn::Half<Tag<float>> half;
   const auto block = [&](int lane) HWY_ATTR { return hn::LoadU(hn::FixedTag<float, 4>(), at[lane] + first); };
@@ -73,7 +73,7 @@ HWY_INLINE Simd<float> odd_blocks(Simd<float> low, Simd<float> high) {
 
 /// Fields [first, first + 8): half the loads of twice four.
 template <int n_lanes>
-HWY_INLINE void load_eight_fields(const float* const (&at)[n_lanes], int first, Simd<float>* fields) {
+HWY_INLINE void load_eight_fields(const float* const (&at)[n_lanes], std::ptrdiff_t first, Simd<float>* fields) {
   const Tag<float> d;
   const auto record = [&](int lane) HWY_ATTR { return hn::LoadU(hn::FixedTag<float, 8>(), at[lane] + first); };
   Simd<float> low[4], high[4];  // the first half of the neighbours, and the second
@@ -95,11 +95,11 @@ HWY_INLINE void load_eight_fields(const float* const (&at)[n_lanes], int first, 
   }
 }
 
-/// Fields [first, first + n) of the records of one vector of neighbours: fields[f] holds field first + f of each.
-template <int first, int n>
-HWY_INLINE void load_fields(const float* records, int stride, const std::int32_t* index,
+/// Fields [first, first + n) of the records, of `stride` numbers, of one vector of neighbours: fields[f] holds field
+/// first + f of each.
+template <int stride, int n>
+HWY_INLINE void load_fields(const float* records, std::ptrdiff_t first, const std::int32_t* index,
                             Simd<float> (&fields)[padded_fields(n)]) {
-  static_assert(first % 4 == 0);
   constexpr int n_loaded = padded_fields(n);
   const float* at[lanes<float>];
   for (int lane = 0; lane < lanes<float>; ++lane)
@@ -109,28 +109,23 @@ HWY_INLINE void load_fields(const float* records, int stride, const std::int32_t
 }
 
 /// Double precision serves studies, not speed: plain gathers.
-template <int first, int n>
-HWY_INLINE void load_fields(const double* records, int stride, const std::int32_t* index,
+template <int stride, int n>
+HWY_INLINE void load_fields(const double* records, std::ptrdiff_t first, const std::int32_t* index,
                             Simd<double> (&fields)[padded_fields(n)]) {
   const Tag<double> d;
   const Tag<std::int64_t> di;
   const auto indices = hn::PromoteTo(di, hn::LoadU(hn::Rebind<std::int32_t, decltype(di)>(), index));
-  const auto offsets = hn::Mul(indices, hn::Set(di, stride));
+  const auto offsets = hn::Mul(indices, hn::Set(di, std::int64_t{stride}));
   for (int f = 0; f < n; ++f) fields[f] = hn::GatherIndex(d, records + first + f, offsets);
 }
 
-template <int field>
-HWY_INLINE Simd<float> load_field(const float* records, int stride, const std::int32_t* index) {
-  Simd<float> four[4];
-  load_fields<field / 4 * 4, 4>(records, stride, index, four);
-  return four[field % 4];
-}
-
-template <int field>
-HWY_INLINE Simd<double> load_field(const double* records, int stride, const std::int32_t* index) {
-  Simd<double> fields[4];
-  load_fields<field, 1>(records, stride, index, fields);
-  return fields[0];
+/// One field of a vector of neighbours.
+template <int Dim, typename Real, int field>
+HWY_INLINE Simd<Real> load_field(const PairFields<Dim, Real>& fields, const std::int32_t* index) {
+  constexpr int n_together = std::is_same_v<Real, float> ? 4 : 1, first = field / n_together * n_together;
+  Simd<Real> loaded[4];
+  load_fields<PairFields<Dim, Real>::record_size, n_together>(fields.records.data(), first, index, loaded);
+  return loaded[field - first];
 }
 
 /// The sums over the lanes of as many vectors as each has lanes: adding interleaved halves takes 14 shuffles for eight
@@ -252,11 +247,11 @@ template <int Dim, typename Real>
 struct Neighbours {
   Simd<Real> x_ij[Dim], v_ij[Dim], volume, density;
 
-  HWY_INLINE Neighbours(const Real* record_i, const Real* records, int stride, const std::int32_t* index) {
+  HWY_INLINE Neighbours(const Real* record_i, const Real* records, const std::int32_t* index) {
     using Fields = PairFields<Dim, Real>;
     const Tag<Real> d;
     Simd<Real> fields[padded_fields(Fields::n_motion)];
-    load_fields<0, Fields::n_motion>(records, stride, index, fields);
+    load_fields<Fields::record_size, Fields::n_motion>(records, 0, index, fields);
     for (int a = 0; a < Dim; ++a) x_ij[a] = hn::Sub(hn::Set(d, record_i[a]), fields[a]);
     for (int a = 0; a < Dim; ++a)
       v_ij[a] = hn::Sub(hn::Set(d, record_i[Fields::velocity_at + a]), fields[Fields::velocity_at + a]);

@@ -48,9 +48,10 @@ constexpr int padded_fields(int n_fields) {
   return (n_fields + 3) / 4 * 4;
 }
 
-/// The particles as the pair loops read them: a record each of one or two cache lines (in single precision), in the
-/// order of the neighbour lists. Positions are relative to an origin near the particles, so that Real may be float.
-/// Fields of unused terms are not read.
+/// The particles as the pair loops read them, in the order of the neighbour lists: a record each and, where there is a
+/// stress, a record of it, both of one cache line (in single precision). They lie apart, as the first pass reads the
+/// first alone. Positions are relative to an origin near the particles, so that Real may be float. Fields of unused
+/// terms are not read.
 template <int Dim, typename Real>
 struct PairFields {
   /// Position [m] is first, then velocity [m/s], volume V [m^Dim], density rho [kg/m^Dim].
@@ -65,21 +66,30 @@ struct PairFields {
   /// Where sight differs, viscosity at rest eta [Pa s]: in the first pass, and in the second, which reads no heat,
   /// followed by 1/eta.
   static constexpr int rest_viscosity_at = 14, rest_viscosity_of_forces_at = 12;
-  /// S L row-major [Pa]. With hourglass control, then eta_h/2 [Pa s] and eta_h E/2 [Pa], E the symmetric velocity
-  /// gradient, packed, its off-diagonal entries doubled.
-  static constexpr int stress_at = 16, hourglass_at = stress_at + Dim * Dim;
+  static constexpr int record_size = 16;
+
+  /// A record of stress begins with S L row-major [Pa]. With hourglass control, then eta_h/2 [Pa s] and eta_h E/2 [Pa],
+  /// E the symmetric velocity gradient, packed, its off-diagonal entries doubled.
+  static constexpr int hourglass_at = Dim * Dim;
   static constexpr int n_stress(bool with_hourglass) {
     return Dim * Dim + (with_hourglass ? 1 + Dim * (Dim + 1) / 2 : 0);
   }
-  static constexpr int stride_of(bool with_stress) {
-    return with_stress ? stress_at + padded_fields(n_stress(true)) : stress_at;
+  static_assert(n_stress(true) <= record_size);
+
+  /// n records, then as many of stress where there is one. Both are as long, so that a neighbour's lies as far behind
+  /// its record as any other's.
+  std::vector<Real, tbb::cache_aligned_allocator<Real>> records;
+  std::ptrdiff_t stresses_at = 0;
+
+  /// Makes room for `n` particles.
+  void resize(std::size_t n, bool with_stress) {
+    records.resize((with_stress ? 2 : 1) * n * record_size);
+    stresses_at = static_cast<std::ptrdiff_t>(n * record_size);
   }
-
-  int stride = stride_of(false);                                  ///< of a scene
-  std::vector<Real, tbb::cache_aligned_allocator<Real>> records;  ///< n of `stride`
-
-  Real* record(std::size_t i) { return records.data() + i * static_cast<std::size_t>(stride); }
-  const Real* record(std::size_t i) const { return records.data() + i * static_cast<std::size_t>(stride); }
+  Real* record(std::size_t i) { return records.data() + i * record_size; }
+  const Real* record(std::size_t i) const { return records.data() + i * record_size; }
+  Real* stress(std::size_t i) { return record(i) + stresses_at; }
+  const Real* stress(std::size_t i) const { return record(i) + stresses_at; }
 };
 
 /// Sums of the first pass for one particle.

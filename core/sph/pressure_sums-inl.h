@@ -27,10 +27,10 @@ void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const Neighbour
     const Real* record_i = fields.record(i);
     // The gradient is first, then the moment.
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const Neighbours<Dim, Real> pair(record_i, fields.records.data(), fields.stride, index);
+      const Neighbours<Dim, Real> pair(record_i, fields.records.data(), index);
       const auto& x_ij = pair.x_ij;
       const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(dot<Dim, Real>(x_ij, x_ij)));
-      const auto p_j = load_field<Fields::pressure_at>(fields.records.data(), fields.stride, index);
+      const auto p_j = load_field<Dim, Real, Fields::pressure_at>(fields, index);
       const auto p_ji = hn::Sub(p_j, hn::Set(d, record_i[Fields::pressure_at]));
       for (int b = 0; b < Dim; ++b) {
         const auto weighted = hn::Mul(volume_f, x_ij[b]);
@@ -62,13 +62,13 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
     const Real* record_i = fields.record(i);
     const Real* gradient_i = gradients.data() + i * stride;
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const Neighbours<Dim, Real> pair(record_i, fields.records.data(), fields.stride, index);
+      const Neighbours<Dim, Real> pair(record_i, fields.records.data(), index);
       const auto r2 = dot<Dim, Real>(pair.x_ij, pair.x_ij);
       Simd<Real> gradient_j[padded_fields(Dim)];
-      load_fields<0, Dim>(gradients.data(), stride, index, gradient_j);
+      load_fields<stride, Dim>(gradients.data(), 0, index, gradient_j);
       Simd<Real> gradient[Dim];
       for (int a = 0; a < Dim; ++a) gradient[a] = hn::Add(hn::Set(d, gradient_i[a]), gradient_j[a]);
-      const auto p_j = load_field<Fields::pressure_at>(fields.records.data(), fields.stride, index);
+      const auto p_j = load_field<Dim, Real, Fields::pressure_at>(fields, index);
       const auto p_ji = hn::Sub(p_j, hn::Set(d, record_i[Fields::pressure_at]));
       const auto unexplained = hn::MulAdd(half, dot<Dim, Real>(gradient, pair.x_ij), p_ji);
       const auto weight = hn::Div(hn::Mul(hn::Mul(pair.volume, kernel.gradient_over_r(r2)), r2), hn::Add(r2, soft));

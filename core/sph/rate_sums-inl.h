@@ -57,13 +57,12 @@ SightedSums<Dim, Real> sighted_sums(const PairFields<Dim, Real>& fields, const P
                                     const NeighbourLists::Row& row, std::size_t i) {
   const Tag<Real> d;
   using Fields = PairFields<Dim, Real>;
-  const Real* records = fields.records.data();
-  constexpr int stride = Fields::stride_of(true), position_at = Dim * Dim;
-  const Real* record_i = records + i * stride;
+  constexpr int position_at = Dim * Dim;
+  const Real* record_i = fields.record(i);
   const auto sight_i = hn::Set(d, static_cast<Real>(sight_of_thinner) / record_i[Fields::rest_viscosity_at]);
   const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-    const Neighbours<Dim, Real> pair(record_i, records, stride, index);
-    const auto eta_j = load_field<Fields::rest_viscosity_at>(records, stride, index);
+    const Neighbours<Dim, Real> pair(record_i, fields.records.data(), index);
+    const auto eta_j = load_field<Dim, Real, Fields::rest_viscosity_at>(fields, index);
     const auto sight = hn::Min(hn::Set(d, Real(1)), hn::Mul(sight_i, eta_j));
     const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(dot<Dim, Real>(pair.x_ij, pair.x_ij)));
     const auto weight = hn::Mul(volume_f, sight);
@@ -89,9 +88,9 @@ struct WeighedPairs {
 
 /// Those at `index` of a particle whose record is `record_i`.
 template <typename PairKernel, int Dim, typename Real, bool with_xsph>
-HWY_INLINE void weigh_pairs(const PairKernel& kernel, const Real* record_i, const Real* records, int stride,
+HWY_INLINE void weigh_pairs(const PairKernel& kernel, const Real* record_i, const Real* records,
                             const std::int32_t* index, WeighedPairs<Dim, Real>& out) {
-  const Neighbours<Dim, Real> pair(record_i, records, stride, index);
+  const Neighbours<Dim, Real> pair(record_i, records, index);
   const auto r2 = dot<Dim, Real>(pair.x_ij, pair.x_ij);
   out.volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(r2));
   out.mass_f = hn::Mul(pair.density, out.volume_f);
@@ -169,16 +168,15 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   using Fields = PairFields<Dim, Real>;
   using At = RateIndex<Dim, with_stress, with_heat, with_xsph>;
   const Real* records = fields.records.data();
-  constexpr int stride = Fields::stride_of(with_stress);
   std::vector<std::int32_t> buffer(lists.room());
   std::vector<WeighedPairs<Dim, Real>, tbb::cache_aligned_allocator<WeighedPairs<Dim, Real>>> weighed(
       lists.room() / lanes<Real> + 1);
   for (std::size_t i = begin; i < end; ++i) {
-    const Real* record_i = records + i * stride;
+    const Real* record_i = fields.record(i);
     [[maybe_unused]] auto thinnest = hn::Set(d, record_i[Fields::rest_viscosity_at]);
     const NeighbourLists::Row row = lists.read(i, buffer.data());
     for (std::size_t k = 0; k < row.neighbours.size(); k += lanes<Real>)
-      weigh_pairs<PairKernel, Dim, Real, with_xsph>(kernel, record_i, records, stride, row.padded.data() + k,
+      weigh_pairs<PairKernel, Dim, Real, with_xsph>(kernel, record_i, records, row.padded.data() + k,
                                                     weighed[k / lanes<Real>]);
     const auto weighed_at = [&](const std::int32_t* index) HWY_ATTR -> const WeighedPairs<Dim, Real>& {
       return weighed[static_cast<std::size_t>(index - row.padded.data()) / lanes<Real>];
@@ -195,12 +193,12 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
       const WeighedPairs<Dim, Real>& pair = weighed_at(index);
       add_position_moment<Dim, Real>(pair, pair.volume_f, sum);
       if constexpr (with_sight && !with_heat)
-        thinnest = hn::Min(thinnest, load_field<Fields::rest_viscosity_at>(records, stride, index));
+        thinnest = hn::Min(thinnest, load_field<Dim, Real, Fields::rest_viscosity_at>(fields, index));
     };
     const auto add_heats = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
       constexpr int n_heat = with_sight ? Fields::rest_viscosity_at + 1 - Fields::heat_at : Fields::n_heat;
       Simd<Real> heat_j[padded_fields(n_heat)];
-      load_fields<Fields::heat_at, n_heat>(records, stride, index, heat_j);
+      load_fields<Fields::record_size, n_heat>(records, Fields::heat_at, index, heat_j);
       if constexpr (with_sight) thinnest = hn::Min(thinnest, heat_j[Fields::rest_viscosity_at - Fields::heat_at]);
       add_heat<Dim, Real, heat_terms>(weighed_at(index), record_i, heat_j, sum);
     };

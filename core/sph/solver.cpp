@@ -64,7 +64,6 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
   if (colliders_.has_walls())
     walls_.emplace(WallKernel<Dim>(parameters_.smoothing_length, parameters_.kernel), spacing_,
                    Colliders<Dim>::wall_guard * particle_radius<Dim>(parameters_.particle_volume));
-  fields_.stride = PairFields<Dim, Real>::stride_of(terms_.pair.stress);
   open_boundaries();
   resize_derived();
 }
@@ -171,7 +170,7 @@ void Solver<Dim, Real>::search_neighbours(double skin) {
   // The records are packed anew after a search: until then their memory is free, with one more record for what
   // alignment takes.
   const std::size_t n = particles_.size();
-  fields_.records.resize((n + 1) * static_cast<std::size_t>(fields_.stride));
+  fields_.resize(n + 1, terms_.pair.stress);
   const std::span<std::byte> scratch = std::as_writable_bytes(std::span(fields_.records));
   const std::size_t for_order = n * (sizeof(std::uint64_t) + sizeof(std::int32_t)) + 64;
   std::pmr::monotonic_buffer_resource memory(scratch.data(), for_order);
@@ -236,8 +235,7 @@ void Solver<Dim, Real>::apply_wall_forces(std::size_t slot) {
   Mat<Dim> corrected_stress = Mat<Dim>::Zero();
   if (terms_.pair.stress)
     for (int a = 0; a < Dim; ++a)
-      for (int b = 0; b < Dim; ++b)
-        corrected_stress(a, b) = fields_.record(i)[PairFields<Dim, Real>::stress_at + a * Dim + b];
+      for (int b = 0; b < Dim; ++b) corrected_stress(a, b) = fields_.stress(i)[a * Dim + b];
   Vec<Dim> force = specific_force_[i].template cast<double>();
   for (const WallContact<Dim>& contact : wall.contacts) {
     const PlacedObstacle<Dim>& placed = colliders_.placed()[contact.obstacle];

@@ -52,7 +52,7 @@ template <int Dim, typename Real>
 void Solver<Dim, Real>::pack_motion(bool with_transport) {
   using Fields = PairFields<Dim, Real>;
   const std::size_t n = particles_.size();
-  fields_.records.resize((n + images_.size()) * static_cast<std::size_t>(fields_.stride));
+  fields_.resize(n + images_.size(), terms_.pair.stress);
   const bool with_pressure = walls_ || terms_.diffusion;
   double largest_conductivity = 0.0;
   for (const Material& m : materials_)
@@ -75,11 +75,13 @@ void Solver<Dim, Real>::pack_motion(bool with_transport) {
 
 template <int Dim, typename Real>
 void Solver<Dim, Real>::copy_records_to_images() {
+  using Fields = PairFields<Dim, Real>;
   const std::size_t n = particles_.size();
   parallel_for_each(images_.size(), [&](std::size_t k) {
     const std::size_t source = images_.source[k];
     Real* record = fields_.record(n + k);
-    std::copy_n(fields_.record(source), fields_.stride, record);
+    std::copy_n(fields_.record(source), Fields::record_size, record);
+    if (terms_.pair.stress) std::copy_n(fields_.stress(source), Fields::record_size, fields_.stress(n + k));
     // From the state, as its source's: shifting the rounded record would round it twice.
     const Vec<Dim> x = particles_.position[source] + images_.shift[k] - origin_;
     for (int a = 0; a < Dim; ++a) record[a] = static_cast<Real>(x[a]);
@@ -114,7 +116,7 @@ void Solver<Dim, Real>::pack_forces(std::size_t i) {
 /// does not read it.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::pack_stress(std::size_t i, std::size_t k, const StressBlock<Dim>& stresses) {
-  Real* record = fields_.record(i) + PairFields<Dim, Real>::stress_at;
+  Real* record = fields_.stress(i);
   for (std::size_t ab = 0; ab < Dim * Dim; ++ab) record[ab] = static_cast<Real>(stresses.corrected_stress[ab][k]);
   if (terms_.pair.hourglass) pack_hourglass(i, k, stresses);
 }
@@ -146,7 +148,7 @@ void Solver<Dim, Real>::pack_hourglass(std::size_t i, std::size_t k, const Stres
   if (terms_.relaxed)
     eta = std::min(eta, 0.25 * particles_.density[i] * parameters_.shear_wave_speed * parameters_.smoothing_length);
   const double half = 0.5 * parameters_.hourglass_control * eta;
-  Real* record = fields_.record(i) + PairFields<Dim, Real>::hourglass_at;
+  Real* record = fields_.stress(i) + PairFields<Dim, Real>::hourglass_at;
   record[0] = static_cast<Real>(half);
   for (int m = 0; m < n_symmetric<Dim>; ++m) {
     const auto [a, b] = symmetric_entry<Dim>(m);

@@ -22,8 +22,7 @@ struct Pair {
 
   Pair(KernelType kernel, double distance) {
     using Fields = PairFields<Dim, Real>;
-    fields.stride = Fields::stride_of(true);
-    fields.records.assign(2 * static_cast<std::size_t>(fields.stride), Real(0));
+    fields.resize(2, true);
     for (const int k : {0, 1}) {
       Real* record = fields.record(static_cast<std::size_t>(k));
       record[Fields::heat_at] = k == 0 ? Real(1) : Real(3);
@@ -38,7 +37,7 @@ struct Pair {
       record[Fields::density_at] = static_cast<Real>(2 + k);
       record[Fields::specific_pressure_at] = static_cast<Real>(k);
       for (int entry = 0; entry < Dim * Dim; ++entry)
-        record[Fields::stress_at + entry] = static_cast<Real>(1 + entry + k);
+        fields.stress(static_cast<std::size_t>(k))[entry] = static_cast<Real>(1 + entry + k);
     }
     const std::vector<Vec<Dim>> position = {Vec<Dim>::Zero(), Vec<Dim>::Unit(0)};
     build_neighbour_lists<Dim>(position, 2.0, 2.0, pair_lanes<Real>, lists);
@@ -87,7 +86,7 @@ void expect_kernels_agree(double tolerance) {
       using Fields = PairFields<Dim, Real>;
       Fields fields;
       for (const std::size_t k : {0, 1}) {
-        fields.records.insert(fields.records.end(), pair.fields.record(k), pair.fields.record(k) + fields.stride);
+        fields.records.insert(fields.records.end(), pair.fields.record(k), pair.fields.record(k) + Fields::record_size);
         fields.record(k)[Fields::specific_pressure_at] = k == 0 ? Real(4) : Real(0);
       }
       compute_force_sums<Dim, Real>(fields, pair.lists, terms, {h, 0.0, 1.0}, 0, 2, acceleration);
@@ -164,8 +163,7 @@ struct Block {
     build_neighbour_lists<3>(sorted, reach, reach, pair_lanes<float>, lists);
     n = sorted.size();
     using Fields = PairFields<3, float>;
-    fields.stride = Fields::stride_of(true);
-    fields.records.resize(n * static_cast<std::size_t>(fields.stride));
+    fields.resize(n, true);
     for (float& value : fields.records) value = static_cast<float>(1.5 + uniform(random));
     for (std::size_t i = 0; i < n; ++i)
       for (int a = 0; a < 3; ++a) fields.record(i)[a] = static_cast<float>(sorted[i][a]);
