@@ -180,7 +180,7 @@ void take_trial_steps(const Scene& scene, SimulationSetup& setup, int n_trial_st
   });
   const double n = static_cast<double>(state.size());
   using Balance = HeatBalance<3, Real>;
-  const double derived_bytes = PairFields<3, Real>::stride_of(true) * sizeof(Real) +
+  const double derived_bytes = 2.0 * PairFields<3, Real>::record_size * sizeof(Real) +
                                3.0 * sizeof(typename Solver<3, Real>::RealVec) + sizeof(Balance) + 4.0 * sizeof(double);
   const auto list_bytes = static_cast<double>(solver.neighbours().n_bytes());
   forecast.bytes = (state_bytes + n * derived_bytes + list_bytes) * std::max(1.0, n_end / n);

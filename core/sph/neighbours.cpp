@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <cstring>
+#include <immintrin.h>
 #include <limits>
 #include <numeric>
 
@@ -154,24 +156,84 @@ void replace(std::vector<T>& target, const std::vector<T>& source) {
   target.assign(source.begin(), source.end());
 }
 
+/// What the particles of one cell may have in reach: positions run by run, each run padded to whole vectors with what
+/// nothing reaches.
+template <int Dim>
+struct Candidates {
+  static constexpr std::size_t width = 8;  ///< of a vector: their places are compressed as one number
+  static constexpr double nowhere = std::numeric_limits<double>::infinity();
+
+  std::array<std::vector<double>, Dim> x;
+  std::vector<std::size_t> run_at;  ///< where each run begins
+
+  void gather(std::span<const Vec<Dim>> position, const std::vector<Run>& runs) {
+    run_at.clear();
+    std::size_t n = 0;
+    for (const Run& run : runs) {
+      run_at.push_back(n);
+      n += (static_cast<std::size_t>(run.end - run.begin) + width - 1) / width * width;
+    }
+    for (int axis = 0; axis < Dim; ++axis) {
+      x[axis].assign(n, nowhere);
+      for (std::size_t r = 0; r < runs.size(); ++r) {
+        double* out = x[axis].data() + run_at[r];
+        for (std::int32_t j = runs[r].begin; j < runs[r].end; ++j) *out++ = position[j][axis];
+      }
+    }
+  }
+};
+
+/// Bit k says whether the k-th of Candidates::width points from `x` on lies nearer than sqrt(radius2) to `from`.
+template <int Dim>
+std::uint64_t within(const std::array<const double*, Dim>& x, std::size_t first, const __m256d (&from)[Dim],
+                     __m256d radius2) {
+  std::uint64_t mask = 0;
+#pragma GCC unroll 2
+  for (std::size_t half = 0; half < 2; ++half) {
+    __m256d r2 = _mm256_setzero_pd();
+#pragma GCC unroll 3
+    for (int axis = 0; axis < Dim; ++axis) {
+      const __m256d d = _mm256_sub_pd(_mm256_loadu_pd(x[axis] + first + 4 * half), from[axis]);
+      r2 = _mm256_add_pd(_mm256_mul_pd(d, d), r2);
+    }
+    const int near = _mm256_movemask_pd(_mm256_cmp_pd(r2, radius2, _CMP_LT_OQ));
+    mask |= static_cast<std::uint64_t>(near) << (4 * half);
+  }
+  return mask;
+}
+
 /// Appends the row of particle `i` to `bytes`; returns how many neighbours it has.
 template <int Dim>
-std::size_t append_row(std::span<const Vec<Dim>> position, double radius2, const std::vector<Run>& runs, std::int32_t i,
-                       std::vector<std::uint8_t>& bytes) {
-  std::size_t n_candidates = 0;
-  for (const Run& run : runs) n_candidates += static_cast<std::size_t>(run.end - run.begin);
+std::size_t append_row(const Candidates<Dim>& candidates, const Vec<Dim>& position, double radius2,
+                       const std::vector<Run>& runs, std::int32_t i, std::vector<std::uint8_t>& bytes) {
+  constexpr std::size_t width = Candidates<Dim>::width;
+  constexpr std::uint64_t first_places = 0x0706050403020100, ones = 0x0101010101010101;
   const std::size_t start = bytes.size();
-  bytes.resize(start + runs.size() + n_candidates + 1);
+  bytes.resize(start + runs.size() + candidates.x[0].size() + width);
   std::uint8_t* count = bytes.data() + start;
   std::uint8_t* const first = count + runs.size();
   std::uint8_t* place = first;
-  const Vec<Dim> x = position[i];
-  for (const Run& run : runs) {
+  // Of its own: bytes that are written might be anything, even these.
+  const __m256d radius2s = _mm256_set1_pd(radius2);
+  std::array<const double*, Dim> x;
+  __m256d from[Dim];
+  for (int axis = 0; axis < Dim; ++axis) {
+    x[axis] = candidates.x[axis].data();
+    from[axis] = _mm256_set1_pd(position[axis]);
+  }
+  for (std::size_t r = 0; r < runs.size(); ++r) {
     const std::uint8_t* before = place;
-    // Branch-free: every candidate is written, only near ones are kept.
-    for (std::int32_t j = run.begin; j < run.end; ++j) {
-      *place = static_cast<std::uint8_t>(j - run.begin);
-      place += (x - position[j]).squaredNorm() < radius2 && j != i;
+    const std::size_t run_at = candidates.run_at[r];
+    const auto n = static_cast<std::size_t>(runs[r].end - runs[r].begin);
+    const std::int64_t self = i - std::int64_t{runs[r].begin};
+    for (std::size_t k = 0; k < n; k += width) {
+      std::uint64_t near = within<Dim>(x, run_at + k, from, radius2s);
+      const std::int64_t self_bit = self - static_cast<std::int64_t>(k);
+      if (self_bit >= 0 && self_bit < static_cast<std::int64_t>(width)) near &= ~(std::uint64_t{1} << self_bit);
+      // A whole vector of places is written, the near ones in front.
+      const std::uint64_t places = _pext_u64(first_places + k * ones, _pdep_u64(near, ones) * 0xFF);
+      std::memcpy(place, &places, width);
+      place += std::popcount(near);
     }
     *count++ = static_cast<std::uint8_t>(place - before);
   }
@@ -232,6 +294,7 @@ void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, do
         NeighbourLists::Block& block = lists.blocks[b];
         thread_local std::vector<std::int32_t> run_begin;
         thread_local std::vector<std::uint8_t> bytes;
+        thread_local Candidates<Dim> candidates;
         run_begin.clear();
         bytes.clear();
         for (std::size_t k = 0; k < cells_per_block; ++k) {
@@ -240,10 +303,12 @@ void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, do
           if (c >= cells.size()) continue;
           const std::vector<Run> runs = split_runs(find_runs<Dim>(table, cells[c].key));
           for (const Run& run : runs) run_begin.push_back(run.begin);
+          candidates.gather(position, runs);
           for (std::int32_t i = cells[c].begin; i < cells[c].end; ++i) {
             CHECK_LE(bytes.size(), std::numeric_limits<std::uint32_t>::max());
             lists.places[i] = {static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(bytes.size())};
-            longest[b] = std::max(longest[b], append_row<Dim>(position, radius * radius, runs, i, bytes));
+            longest[b] =
+                std::max(longest[b], append_row<Dim>(candidates, position[i], radius * radius, runs, i, bytes));
           }
         }
         block.first_run.back() = static_cast<std::uint32_t>(run_begin.size());
