@@ -63,11 +63,16 @@ double volume_ratio(const ParticleFrame& frame, const SurfacingOptions& options 
 TEST(Surface, ParticlesOfTwoDensitiesCountByTheirOwnMass) {
   ParticleFrame frame = make_ball(6.0);
   const TriangleMesh uniform = build_surface(frame, {}).mesh;
+  const double middle = 6.3 * spacing;
+  std::size_t n_heavy = 0;
   for (std::size_t i = 0; i < frame.size(); ++i) {
-    const float factor = frame.position[i][0] < 0.0 ? 3.0f : 1.0f;
+    const float factor = frame.position[i][0] < middle ? 3.0f : 1.0f;
+    n_heavy += factor > 1.0f;
     frame.density[i] *= factor;
     frame.masses.push_back(static_cast<float>(frame.mass) * factor);
   }
+  ASSERT_GT(n_heavy, frame.size() / 3);
+  ASSERT_LT(n_heavy, 2 * frame.size() / 3);
   const TriangleMesh mixed = build_surface(frame, {}).mesh;
   ASSERT_EQ(mixed.triangles, uniform.triangles);
   for (std::size_t v = 0; v < mixed.vertices.size(); ++v)
