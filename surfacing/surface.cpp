@@ -78,7 +78,9 @@ SurfaceMesh build_surface(const ParticleFrame& particles, const SurfacingOptions
   const SurfaceRegion region = find_surface_region(bins, volume, spacing);
   const std::vector<float> filling = compute_filling(bins, volume, 2.0 * spacing, &region);
   if (options.thin_feature_gain > 0.0)
-    strengthen_thin_features(volume, bins, filling, h, options.iso_value, options.thin_feature_gain);
+    strengthen_thin_features(
+        volume, bins, filling,
+        {spacing, h, options.cell_over_spacing * spacing, options.iso_value, options.thin_feature_gain});
 
   const auto iso = static_cast<float>(options.iso_value);
   KernelShapes shapes;

@@ -116,17 +116,54 @@ TEST(Surface, ThinFeaturesKeepTheirVolumeAndPiece) {
   EXPECT_THROW(build_surface(make_lattice(Vec3(1, 1, 40)), bare), Error);
 }
 
-TEST(Surface, NoParticleDisappearsWhateverTheKernelAndIsoValue) {
+TEST(Surface, NoParticleDisappearsWhateverTheKernelTheIsoValueAndTheCell) {
   std::vector<Vec3> x;
-  for (int i = 0; i < 60; ++i) x.push_back(spacing * Vec3(6.3 * i, 0.71 * i, -1.37 * i));
-  for (const double h : {0.8, 1.0, 1.2, 1.5})
-    for (const double iso : {0.3, 0.5, 0.8}) {
-      SurfacingOptions options;
-      options.kernel_over_spacing = h;
-      options.iso_value = iso;
+  for (int i = 0; i < 40; ++i) x.push_back(spacing * Vec3(8.3 * i, 0.71 * i, -1.37 * i));
+  for (const double gain : {0.1, 1.0})
+    for (const double h : {0.6, 1.0, 1.5, 3.0})
+      for (const double iso : {0.1, 0.5, 0.8})
+        for (const double cell : {0.5, 0.75, 1.0, 1.25, 1.5}) {
+          if (cell > 1.5 * h) continue;
+          SurfacingOptions options;
+          options.thin_feature_gain = gain;
+          options.kernel_over_spacing = h;
+          options.iso_value = iso;
+          options.cell_over_spacing = cell;
+          const SurfaceMesh surface = build_surface(make_frame(x), options);
+          EXPECT_EQ(compute_topology(surface.mesh).n_components, x.size())
+              << "gain " << gain << " h " << h << " iso " << iso << " cell " << cell;
+        }
+}
+
+// A wide kernel of a height that any iso-value is below would make drops of 3 and 10 particles' volumes.
+TEST(Surface, WideKernelsDoNotBlowUpDrops) {
+  std::vector<Vec3> x;
+  for (int i = 0; i < 40; ++i) x.push_back(spacing * Vec3(12.3 * i, 0.71 * i, -1.37 * i));
+  for (const double h : {1.5, 2.0, 3.0}) {
+    SurfacingOptions options;
+    options.kernel_over_spacing = h;
+    options.cell_over_spacing = 0.25;
+    EXPECT_NEAR(volume_ratio(make_frame(x), options), 0.9, 0.1) << h;
+  }
+}
+
+TEST(Surface, AVertexFartherOutThanAnyKernelHasAttributes) {
+  std::vector<Vec3> x;
+  for (int i = 0; i < 300; ++i) x.push_back(spacing * Vec3(4.27 * (i % 7), 4.71 * (i / 7 % 7), 4.37 * (i / 49)));
+  SurfacingOptions wide, preview;
+  wide.cell_over_spacing = 1.5;
+  wide.iso_value = 0.07;
+  preview.cell_over_spacing = 0.75;
+  preview.iso_value = 0.01;
+  for (SurfacingOptions options : {wide, preview}) {
+    options.anisotropic = false;
+    for (double gain : {0.0, 1.0}) {
+      options.thin_feature_gain = gain;
       const SurfaceMesh surface = build_surface(make_frame(x), options);
-      EXPECT_EQ(compute_topology(surface.mesh).n_components, x.size()) << h << " " << iso;
+      for (const Vec3f& v : surface.velocity) ASSERT_LT((v - Vec3f(1.0f, -2.0f, 0.5f)).norm(), 1e-5f);
+      for (const float t : surface.temperature) ASSERT_NEAR(t, 350.0f, 1e-3f);
     }
+  }
 }
 
 TEST(Surface, AThreadBetweenTwoBallsIsNotSmoothedAway) {
