@@ -21,10 +21,10 @@ struct VertexInBin {
 /// Vertices sorted by the bin they are in, so that those of a bin share their neighbours.
 std::vector<VertexInBin> sort_vertices(const std::vector<Vec3>& vertices, double edge) {
   std::vector<VertexInBin> out(vertices.size());
-  for (std::size_t v = 0; v < vertices.size(); ++v) {
+  parallel_for_each(vertices.size(), [&](std::size_t v) {
     const Vec3 b = vertices[v] / edge;
     out[v] = {lattice_key(floor_to_int(b[0]), floor_to_int(b[1]), floor_to_int(b[2])), static_cast<std::uint32_t>(v)};
-  }
+  });
   tbb::parallel_sort(out, [](const VertexInBin& a, const VertexInBin& b) {
     return a.key != b.key ? a.key < b.key : a.vertex < b.vertex;
   });
