@@ -18,6 +18,7 @@ namespace smelt {
 struct SparseField {
   static constexpr int block_edge = 8;
   static constexpr int block_size = block_edge * block_edge * block_edge;
+  static constexpr int edges_per_block = 3 * block_size;  ///< from each sample to the next one up along each axis
   static constexpr std::size_t no_block = static_cast<std::size_t>(-1);
 
   double cell = 0.0;               ///< distance between samples [m]
