@@ -98,8 +98,8 @@ double fullest_filling(std::span<const Vec3> position, double spacing, double wi
 double estimate_spacing(std::span<const Vec3> position) {
   for (std::size_t i = 0; i < position.size(); ++i)
     if (!position[i].allFinite())
-      fail("particle {} is at ({}, {}, {}): positions must be finite", i, position[i][0], position[i][1],
-           position[i][2]);
+      fail("particle {} of the file, counted from 0, is at ({}, {}, {}): positions must be finite", i, position[i][0],
+           position[i][1], position[i][2]);
   if (position.size() < 8)
     fail("{} particle{} too few to tell how far apart particles are; give --spacing_m", position.size(),
          position.size() == 1 ? " is" : "s are");

@@ -44,6 +44,9 @@ struct ThinFeatureSettings {
 ///    h, iso and cell. From c_j = 0.40 to 0.60 the factor fades to 1: flat surfaces, at 0.67, stay whatever the
 ///    iso-value.
 ///
+/// Beyond h = spacing threads and sheets come out thicker than their particles: at h = 1.4, 2 and 3 spacings
+/// sheets 1.2, 1.6 and 2.3 times, threads with 1.6, 3 and 6 times their volume. Lone drops have 0.9 of theirs there,
+/// where cells are fine; with cells above a spacing they grow with the cell, to 2.8 volumes at 1.25 and 6.4 at 1.5.
 /// Both are continuous in the positions: nothing pops from frame to frame.
 void strengthen_thin_features(std::span<float> volume, const ParticleBins& bins, std::span<const float> filling,
                               const ThinFeatureSettings& settings);

@@ -113,7 +113,8 @@ TEST(Surface, ThinFeaturesKeepTheirVolumeAndPiece) {
   SurfacingOptions bare;
   bare.thin_feature_gain = 0.0;
   bare.anisotropic = false;
-  EXPECT_THROW(build_surface(make_lattice(Vec3(1, 1, 40)), bare), Error);
+  const SurfaceMesh nothing = build_surface(make_lattice(Vec3(1, 1, 40)), bare);
+  EXPECT_TRUE(nothing.mesh.triangles.empty() && nothing.mesh.vertices.empty() && nothing.velocity.empty());
 }
 
 TEST(Surface, NoParticleDisappearsWhateverTheKernelTheIsoValueAndTheCell) {
@@ -233,25 +234,40 @@ TEST(Surface, SameBytesOnOneAndTwoThreads) {
 
 TEST(Surface, RefusesBadInput) {
   EXPECT_THROW(build_surface(make_frame({}), {}), Error);
-  ParticleFrame frame = make_lattice(Vec3(4, 4, 4));
-  frame.position[5][1] = std::numeric_limits<double>::quiet_NaN();
-  try {
-    build_surface(frame, {});
-    ADD_FAILURE() << "a position that is not a number was accepted";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("particle 5"), std::string::npos) << error.what();
-  }
-  frame = make_lattice(Vec3(4, 4, 4));
-  frame.density[3] = 0.0f;
-  EXPECT_THROW(build_surface(frame, {}), Error);
+  const auto expect_refused = [](void (*break_it)(ParticleFrame&), const std::string& what) {
+    ParticleFrame frame = make_lattice(Vec3(4, 4, 4));
+    for (std::size_t i = 0; i < frame.size(); ++i) frame.id[i] = static_cast<std::int32_t>(1000 + i);
+    frame.masses.assign(frame.size(), static_cast<float>(frame.mass));
+    frame.viscosity.assign(frame.size(), 1.0f);
+    frame.rest.assign(frame.size(), Vec3f::Zero());
+    break_it(frame);
+    try {
+      build_surface(frame, {});
+      ADD_FAILURE() << "accepted: " << what;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("frame 7: particle 1005 " + what), std::string::npos) << error.what();
+    }
+  };
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  expect_refused([](ParticleFrame& p) { p.position[5][1] = nan; }, "has the position");
+  expect_refused([](ParticleFrame& p) { p.position[5][2] = -1e9; }, "is at");
+  expect_refused([](ParticleFrame& p) { p.density[5] = 0.0f; }, "has the density 0 kg/m3: it must be positive");
+  expect_refused([](ParticleFrame& p) { p.density[5] = infinity; }, "has the density inf");
+  expect_refused([](ParticleFrame& p) { p.masses[5] = -1.0f; }, "has the mass -1 kg");
+  expect_refused([](ParticleFrame& p) { p.velocity[5][0] = infinity; }, "has the velocity (inf, -2, 0.5) m/s");
+  expect_refused([](ParticleFrame& p) { p.temperature[5] = nan; }, "has the temperature nan K: it must be finite");
+  expect_refused([](ParticleFrame& p) { p.viscosity[5] = infinity; }, "has the viscosity inf Pa s");
+  expect_refused([](ParticleFrame& p) { p.rest[5][2] = nan; }, "has the rest position");
+  // Of several the first.
+  expect_refused([](ParticleFrame& p) { p.density[5] = p.density[60] = p.density[6] = 0.0f; }, "has the density");
 
-  frame = make_lattice(Vec3(4, 4, 4));
+  ParticleFrame frame = make_lattice(Vec3(4, 4, 4));
   for (auto break_it : std::initializer_list<void (*)(SurfacingOptions&)>{
            [](SurfacingOptions& o) { o.iso_value = 0.0; }, [](SurfacingOptions& o) { o.iso_value = 1.0; },
            [](SurfacingOptions& o) { o.cell_over_spacing = 0.0; },
            [](SurfacingOptions& o) { o.cell_over_spacing = 1e-5; },
            [](SurfacingOptions& o) { o.kernel_over_spacing = -1.0; },
-           [](SurfacingOptions& o) { o.smoothing_passes = -1; },
+           [](SurfacingOptions& o) { o.cell_over_spacing = 1.6; }, [](SurfacingOptions& o) { o.smoothing_passes = -1; },
            [](SurfacingOptions& o) { o.thin_feature_gain = std::numeric_limits<double>::quiet_NaN(); }}) {
     SurfacingOptions options;
     break_it(options);
