@@ -14,9 +14,10 @@ namespace {
 
 constexpr int edge = SparseField::block_edge;
 
-/// Bytes a stored block costs: its samples, its key, and what marching cubes keeps for it
-/// (surfacing/marching_cubes.cpp).
-constexpr double bytes_per_block = 512.0 * 4.0 + 8.0 + 1536.0 * 2.0;
+/// Bytes that the surface of a stored block costs from chi to the smoothed mesh, at the worst moment: 10.6 to 11.4 kB
+/// on bodies and sprays of 10^4 to 10^6 particles, where a block has 30 to 40 vertices with their faces, neighbours,
+/// displacements and fields. Its own samples are 2 kB of that.
+constexpr double bytes_per_block = 11.5e3;
 
 struct BlockRange {
   Lattice low{}, high{-1, -1, -1};
@@ -42,8 +43,8 @@ BlockRange blocks_of(const Box3& box, double radius, double cell) {
 
 [[noreturn]] void fail_on_memory(double bytes, double cell, double limit) {
   fail(
-      "surfacing: a grid with cells of {:.3g} m around these particles would need about {:.3g} GB, allowed are {:.3g} "
-      "GB; take coarser cells (surface.cell_over_spacing) or fewer particles, or free memory",
+      "surfacing: a grid with cells of {:.3g} m around these particles and its mesh would need about {:.3g} GB, "
+      "allowed are {:.3g} GB; take coarser cells (surface.cell_over_spacing) or fewer particles, or free memory",
       cell, bytes * 1e-9, limit * 1e-9);
 }
 

@@ -46,7 +46,7 @@ struct ChiSource {
 
 /// The blocks that hold every sample within `radius` [m] of a particle and every sample one step below those, which is
 /// what `extract_iso_surface` asks for; without values. With a `region`, only those of them that touch the surface.
-/// Throws Error when the field would need more than `memory_limit` bytes.
+/// Throws Error when the field, and a mesh made of it, would need more than `memory_limit` bytes.
 SparseField allocate_field(const ParticleBins& bins, double radius, double cell, double memory_limit,
                            const SurfaceRegion* region = nullptr);
 
