@@ -71,7 +71,8 @@ void check_field(const ParticleFrame& p, const char* name, const std::vector<Val
   else
     value = fmt::format("({}, {}, {})", field[i][0], field[i][1], field[i][2]);
   fail(
-      "surfacing: frame {}: particle {} has the {} {} {}: it must be {}; the simulation diverged or the file is damaged",
+      "surfacing: frame {}: particle {} has the {} {} {}: it must be {}; the simulation diverged or the file is "
+      "damaged",
       p.frame, p.id.empty() ? static_cast<std::int64_t>(i) : p.id[i], name, value, unit, must);
 }
 
@@ -101,7 +102,8 @@ void check_particles(const ParticleFrame& p, double kernel_over_spacing) {
   const auto positive = [](auto x) { return x > 0 && std::isfinite(x); };
   if (!positive(p.spacing) || !positive(p.mass))
     fail(
-        "surfacing: frame {}: the particle spacing is {} m and the mass {} kg: both must be positive; is the file whole?",
+        "surfacing: frame {}: the particle spacing is {} m and the mass {} kg: both must be positive; is the file "
+        "whole?",
         p.frame, p.spacing, p.mass);
   CHECK_EQ(p.velocity.size(), p.size());
   CHECK_EQ(p.density.size(), p.size());
