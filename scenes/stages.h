@@ -31,7 +31,8 @@ struct StageOptions {
 void simulate_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report,
                      Progress& progress);
 
-/// Wraps the particles of each frame in a surface: OBJ and VDB. Throws Error for a frame whose particles are missing.
+/// Wraps the particles of each frame in a surface: OBJ and VDB. A frame that cannot be
+/// surfaced does not keep the others from it: Error at the end names the first, as of one whose particles are missing.
 void surface_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report,
                     Progress& progress);
 

@@ -75,4 +75,17 @@ SurfaceMesh make_surface_files(const std::filesystem::path& source, const Partic
   return surface;
 }
 
+void EmptySurfaces::look_at(int frame, const ParticleFrame& particles, const SurfaceMesh& surface) {
+  if (particles.size() == 0 || !surface.mesh.triangles.empty() || ++n_empty_ > 3) return;
+  progress_.message(fmt::format(
+      "warning: frame {}: its {} particles have no surface: chi stays below surface.iso_value = {} everywhere; {}",
+      frame, particles.size(), options_.iso_value,
+      options_.thin_feature_gain > 0.0 ? "a lower one would show them"
+                                       : "surface.thin_feature_gain = 0 lets drops and threads go, 1 keeps them"));
+}
+
+void EmptySurfaces::tell_how_many() const {
+  if (n_empty_ > 3) progress_.message(fmt::format("warning: {} frames have particles and no surface", n_empty_));
+}
+
 }  // namespace smelt

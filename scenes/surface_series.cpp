@@ -248,6 +248,7 @@ SeriesSummary surface_series(const std::vector<std::string>& names, const std::s
                   options.attributes ? fmt::format("{}", fmt::join(*options.attributes, ",")) : "all",
                   write_section(settings, SceneSection::surface));
   SeriesSettings made_from(folder.surfaces() / "settings.toml", text, options.resume);
+  EmptySurfaces empty(settings.surface, progress);
   for (const ParticleFile& file : files) {
     progress.update({"surface", file.frame, files.front().frame, files.back().frame, 0.0, ""});
     stop_if_asked(progress, "surface", file.frame);
@@ -258,10 +259,11 @@ SeriesSummary surface_series(const std::vector<std::string>& names, const std::s
     made_from.set_made(file.frame, false);
     const ParticleFrame particles = read_frame(file, summary.spacing, options);
     if (summary.spacing == 0.0) summary.spacing = particles.spacing;
-    make_surface_files(file.path, particles, settings, folder, file.frame);
+    empty.look_at(file.frame, particles, make_surface_files(file.path, particles, settings, folder, file.frame));
     made_from.set_made(file.frame, true);
     ++summary.n_made;
   }
+  empty.tell_how_many();
   return summary;
 }
 

@@ -341,6 +341,22 @@ void validate_camera(const Scene& scene, SceneErrors& errors) {
                            s.height, pixels * static_cast<double>(film_bytes_per_pixel) * 1e-9, max_picture_pixels));
 }
 
+void validate_surface(const Scene& scene, SceneErrors& errors) {
+  const SurfacingOptions& s = scene.surface;
+  const SurfaceOutputs& outputs = scene.surface_outputs;
+  if (s.cell_over_spacing > most_cell_over_kernel * s.kernel_over_spacing)
+    errors.add("surface.cell_over_spacing",
+               fmt::format("must be at most {} times kernel_over_spacing = {}, or cells pass particles by; is {}",
+                           most_cell_over_kernel, s.kernel_over_spacing, s.cell_over_spacing));
+  if (!outputs.vertex_colours) return;
+  if (std::none_of(scene.materials.begin(), scene.materials.end(), [](const auto& m) { return m.heat.has_value(); }))
+    errors.add("surface.vertex_colours",
+               "follow temperature, but no material has heat; give it one, or leave this out");
+  if (!(outputs.colour_hot > outputs.colour_cold))
+    errors.add("surface.colour_hot_K",
+               fmt::format("must be above colour_cold_K = {}, is {}", outputs.colour_cold, outputs.colour_hot));
+}
+
 void validate_environment(const Scene& scene, SceneErrors& errors) {
   const EnvironmentSettings& s = scene.environment;
   if (s.kind != "image") {
@@ -423,6 +439,7 @@ void validate_scene(const Scene& scene, SceneErrors& errors) {
   for (std::size_t k = 0; k < scene.lights.size(); ++k)
     if ((scene.lights[k].target - scene.lights[k].position).norm() < 1e-9)
       errors.add(fmt::format("light.{}.target_m", k), "is the lamp's own position; choose the point it faces");
+  validate_surface(scene, errors);
   validate_environment(scene, errors);
   validate_look(scene, errors);
   if (scene.render.png_bits != 8 && scene.render.png_bits != 16)

@@ -1,12 +1,17 @@
 #include "surfacing/estimate_spacing.h"
 
 #include "core/error.h"
+#include "core/parallel.h"
 #include "surfacing/particle_bins.h"
 #include "surfacing/thin_features.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <numeric>
 #include <vector>
 
 namespace smelt {
@@ -19,30 +24,65 @@ double quantile(std::vector<double> values, double share) {
   return *at;
 }
 
-/// Distance from every particle to its nearest neighbour, or twice the bins' edge where none is in the bins around it.
-std::vector<double> nearest_distances(const ParticleBins& bins) {
-  std::vector<double> nearest(bins.n_particles(), 2.0 * bins.edge);
-  for (std::size_t b = 0; b < bins.n_bins(); ++b)
-    for (std::uint32_t i = bins.begin[b]; i < bins.begin[b + 1]; ++i) {
-      const Vec3 x = bins.position(b, i);
-      for_each_bin(bins, x.array() - bins.edge, x.array() + bins.edge, [&](std::size_t other) {
-        for (std::uint32_t j = bins.begin[other]; j < bins.begin[other + 1]; ++j)
-          if (j != i) nearest[i] = std::min(nearest[i], (bins.position(other, j) - x).norm());
-      });
+/// Points sorted so that the middle one of any range that halving [0, n) leads to parts the others along one axis.
+class PointTree {
+ public:
+  explicit PointTree(std::span<const Vec3> point) : point_(point), order_(point.size()), axis_(point.size()) {
+    std::iota(order_.begin(), order_.end(), 0u);
+    sort(0, order_.size());
+  }
+
+  /// From point i to the nearest other one; 0 where one is at the same place.
+  double nearest_distance(std::uint32_t i) const {
+    double squared = std::numeric_limits<double>::infinity();
+    search(i, 0, order_.size(), squared);
+    return std::sqrt(squared);
+  }
+
+ private:
+  void sort(std::size_t begin, std::size_t end) {
+    if (end - begin < 2) return;
+    Box3 box;
+    for (std::size_t n = begin; n < end; ++n) box.extend(point_[order_[n]]);
+    int axis = 0;
+    box.extent().maxCoeff(&axis);
+    const std::size_t middle = begin + (end - begin) / 2;
+    std::nth_element(order_.begin() + static_cast<std::ptrdiff_t>(begin),
+                     order_.begin() + static_cast<std::ptrdiff_t>(middle),
+                     order_.begin() + static_cast<std::ptrdiff_t>(end),
+                     [&](std::uint32_t a, std::uint32_t b) { return point_[a][axis] < point_[b][axis]; });
+    axis_[middle] = static_cast<std::uint8_t>(axis);
+    if (end - begin < 4096) {
+      sort(begin, middle);
+      sort(middle + 1, end);
+    } else {
+      tbb::parallel_invoke([&] { sort(begin, middle); }, [&] { sort(middle + 1, end); });
     }
-  return nearest;
-}
+  }
+
+  void search(std::uint32_t i, std::size_t begin, std::size_t end, double& squared) const {
+    if (begin == end) return;
+    const std::size_t middle = begin + (end - begin) / 2;
+    const Vec3& x = point_[i];
+    const Vec3& here = point_[order_[middle]];
+    if (order_[middle] != i) squared = std::min(squared, (here - x).squaredNorm());
+    const double beyond = x[axis_[middle]] - here[axis_[middle]];
+    if (beyond < 0.0) search(i, begin, middle, squared);
+    if (beyond >= 0.0 || beyond * beyond < squared) search(i, middle + 1, end, squared);
+    if (beyond >= 0.0 && beyond * beyond < squared) search(i, begin, middle, squared);
+  }
+
+  std::span<const Vec3> point_;
+  std::vector<std::uint32_t> order_;
+  std::vector<std::uint8_t> axis_;
+};
 
 double median_nearest_distance(std::span<const Vec3> position) {
-  Box3 box;
-  for (const Vec3& x : position) box.extend(x);
-  const double size = box.extent().maxCoeff();
-  // From bins with a particle each, were the box full, to ones large enough for most to have a neighbour.
-  double edge = size / std::cbrt(static_cast<double>(position.size()));
-  for (; edge > 0.0 && edge <= 2.0 * size; edge *= 2.0)
-    if (const double median = quantile(nearest_distances(sort_into_bins(position, edge)), 0.5); median <= edge)
-      return median;
-  return 0.0;
+  const PointTree tree(position);
+  std::vector<double> nearest(position.size());
+  parallel_for_each(nearest.size(),
+                    [&](std::size_t i) { nearest[i] = tree.nearest_distance(static_cast<std::uint32_t>(i)); });
+  return quantile(std::move(nearest), 0.5);
 }
 
 /// What the fullest tenth of the particles have around them, s^3 sum_j W(x_i - x_j, width s), at least.
@@ -58,8 +98,8 @@ double fullest_filling(std::span<const Vec3> position, double spacing, double wi
 double estimate_spacing(std::span<const Vec3> position) {
   for (std::size_t i = 0; i < position.size(); ++i)
     if (!position[i].allFinite())
-      fail("particle {} is at ({}, {}, {}): positions must be finite", i, position[i][0], position[i][1],
-           position[i][2]);
+      fail("particle {} of the file, counted from 0, is at ({}, {}, {}): positions must be finite", i, position[i][0],
+           position[i][1], position[i][2]);
   if (position.size() < 8)
     fail("{} particle{} too few to tell how far apart particles are; give --spacing_m", position.size(),
          position.size() == 1 ? " is" : "s are");

@@ -1,6 +1,6 @@
 #pragma once
-// Eight floats in one register: AVX2 is the least a machine must have (docs/decisions/0002), and a plain loop over a
-// kernel does not vectorise under the compiler flags of this project, as sqrt may set errno.
+// Eight floats in one register: AVX2 is the least a machine must have (docs/decisions/0002). A plain loop over a kernel
+// would not become this by itself: a compiler may not change the order of a sum of floats, and here the lanes fix it.
 
 #include <array>
 #include <bit>

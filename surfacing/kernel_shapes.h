@@ -31,11 +31,12 @@ KernelShape isotropic_shape(double h);
 
 /// Anisotropic kernels after [Yu & Turk 2013] for the particles near the surface: the weighted covariance of the
 /// neighbours within R = 3 `spacing` [m], w = 1 - (r/R)^3, has axes e_k and variances l_k; M = sum_k e_k e_k^T / (h
-/// s_k)^2 with s_k = (l_k / (0.15 R^2))^0.15, which is 1 in the bulk and 0.84 across a flat surface, held in [0.5,
-/// 1.15]. Departures from the text: a smaller power of the variance, at which a ball has its volume; kernels keep their
-/// integral, but for a factor min(1, s_2/0.7) of the middle s, which is 1 but on threads and gives those their volume;
-/// centres stay where they are, as moving them to the weighted means shrinks everything by most of a spacing; and
-/// between 4 neighbours and 1 the kernel turns round continuously, so that nothing pops.
+/// s_k)^2 with s_k = (l_k / (0.15 R^2))^0.15, which is 1 in the bulk, 0.84 across a flat surface and 0.87 half a
+/// spacing below it, held in [0.5, 1.15]. Departures from the text: a smaller power of the variance, at which a ball
+/// has its volume; kernels keep their integral, but for a factor min(1, s_2/0.75) of the middle s, which is 1 but on
+/// threads and gives those their volume; centres stay where they are, as moving them to the weighted means shrinks
+/// everything by most of a spacing; and between 4 neighbours and 1 the kernel turns round continuously, so that nothing
+/// pops.
 KernelShapes compute_kernel_shapes(const ParticleBins& bins, const SurfaceRegion& region, double spacing, double h);
 
 }  // namespace smelt

@@ -89,7 +89,7 @@ struct CornerCode {
   unsigned neighbour() const { return bits >> 11; }
   unsigned slot() const { return bits & slot_mask; }
 };
-constexpr int n_slots = 3 * SparseField::block_size;
+constexpr int n_slots = SparseField::edges_per_block;
 
 /// What one block adds to the mesh.
 struct BlockSurface {
@@ -253,7 +253,9 @@ TriangleMesh extract_iso_surface(const SparseField& field, float iso) {
     block.first_triangle = n_triangles;
     n_vertices += block.edge_vertices.size() + block.inner_vertices.size();
     n_triangles += block.triangles.size();
-    if (n_vertices > 0xffffffffu) fail("surfacing: the surface has more than 2^32 vertices; take coarser cells");
+    // Three corners each: who is next to whom is counted by 32 bits (surfacing/mesh_adjacency.h).
+    if (3 * n_triangles > 0xffffffffu)
+      fail("surfacing: the surface has more than 2^32/3 triangles; take coarser cells (surface.cell_over_spacing)");
   }
 
   TriangleMesh mesh;

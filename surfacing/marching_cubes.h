@@ -23,7 +23,8 @@ constexpr float tie_lift = 0x1p-16f;
 /// metres.
 ///
 /// Requires: the 7 samples one step below each inside sample are in stored blocks, or in `deep` ones next to inside
-/// samples only (`compute_chi` sees to that); otherwise InternalError. Vertices and faces are ordered by block and by
+/// samples only (`compute_chi` sees to that); otherwise InternalError. Throws Error beyond 2^32/3 triangles.
+/// Vertices and faces are ordered by block and by
 /// cell, on any number of threads.
 TriangleMesh extract_iso_surface(const SparseField& field, float iso);
 

@@ -58,7 +58,6 @@ void find_regions(CellCase& cell, unsigned pattern, unsigned joined) {
     else
       merge(c[1], c[2]);
   }
-  for (int c = 0; c < 8; ++c) cell.n_inside_regions += region[c] == c && inside(pattern, c);
 }
 
 /// Each crossed edge is the end of one segment and the start of another. On a face, seen from outside the cell and

@@ -31,7 +31,6 @@ struct CellCase {
   std::vector<std::vector<std::uint8_t>> loops;
   /// Connected region of the cell's boundary that holds each corner; inside and outside corners never share one.
   std::array<std::uint8_t, 8> region{};
-  std::uint8_t n_inside_regions = 0;
   CellSurface discs;                ///< every loop closed by a disc
   std::vector<CellTunnel> tunnels;  ///< every pair of loops that a tube could join
 };
@@ -53,7 +52,7 @@ std::array<std::uint8_t, 2> edge_corners(int edge);
 /// cells.
 std::array<std::uint8_t, 4> face_corners(int face);
 
-/// The table, made on first use (about a millisecond) and shared; safe from any thread.
+/// The table, made on first use (about 10 ms) and shared; safe from any thread.
 const MarchingCubesTable& marching_cubes_table();
 
 }  // namespace smelt

@@ -13,14 +13,15 @@ namespace {
 std::uint64_t bin_key(const Vec3& x, double edge, std::size_t particle) {
   if (!x.allFinite())
     fail(
-        "surfacing: particle {} is at ({}, {}, {}): positions must be finite; the simulation diverged or the file is "
-        "damaged",
+        "surfacing: particle {} of the file, counted from 0, is at ({}, {}, {}): positions must be finite; the "
+        "simulation diverged or the file is damaged",
         particle, x[0], x[1], x[2]);
   const Vec3 scaled = x / edge;
   if (scaled.cwiseAbs().maxCoeff() >= lattice_limit)
     fail(
-        "surfacing: particle {} is at ({}, {}, {}) m: more than {:.3g} m from the origin cannot be gridded at this "
-        "resolution; move the scene to the origin, drop the particle or take a coarser cell",
+        "surfacing: particle {} of the file, counted from 0, is at ({}, {}, {}) m: more than {:.3g} m from "
+        "the origin cannot be gridded at this particle spacing; move the scene to the origin, or take the particle "
+        "out of the file",
         particle, x[0], x[1], x[2], edge * lattice_limit);
   return lattice_key(floor_to_int(scaled[0]), floor_to_int(scaled[1]), floor_to_int(scaled[2]));
 }

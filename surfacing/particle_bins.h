@@ -39,7 +39,7 @@ struct ParticleBins {
 };
 
 /// Sorts `position` [m] into bins of `edge` [m]. Throws Error where a position is not finite or too far from the origin
-/// for the lattice (2^20 bins); names the particle.
+/// for the lattice (2^20 bins); names the particle by its place in `position`.
 ParticleBins sort_into_bins(std::span<const Vec3> position, double edge);
 
 /// Calls `visit(bin)` for all bins that touch the box [lower, upper] [m], in ascending order of keys.

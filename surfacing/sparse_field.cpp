@@ -3,8 +3,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "surfacing/kernel.h"
-
-#include <tbb/parallel_sort.h>
+#include "surfacing/key_lists.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,9 +14,10 @@ namespace {
 
 constexpr int edge = SparseField::block_edge;
 
-/// Bytes a stored block costs: its samples, its key, and what marching cubes keeps for it
-/// (surfacing/marching_cubes.cpp).
-constexpr double bytes_per_block = 512.0 * 4.0 + 8.0 + 1536.0 * 2.0;
+/// Bytes that the surface of a stored block costs from chi to the smoothed mesh, at the worst moment: 10.6 to 11.4 kB
+/// on bodies and sprays of 10^4 to 10^6 particles, where a block has 30 to 40 vertices with their faces, neighbours,
+/// displacements and fields. Its own samples are 2 kB of that.
+constexpr double bytes_per_block = 11.5e3;
 
 struct BlockRange {
   Lattice low{}, high{-1, -1, -1};
@@ -43,9 +43,8 @@ BlockRange blocks_of(const Box3& box, double radius, double cell) {
 
 [[noreturn]] void fail_on_memory(double bytes, double cell, double limit) {
   fail(
-      "surfacing: a grid with cells of {:.3g} m around these particles would need about {:.3g} GB, allowed are {:.3g} "
-      "GB; "
-      "take coarser cells or raise the limit",
+      "surfacing: a grid with cells of {:.3g} m around these particles and its mesh would need about {:.3g} GB, "
+      "allowed are {:.3g} GB; take coarser cells (surface.cell_over_spacing) or fewer particles, or free memory",
       cell, bytes * 1e-9, limit * 1e-9);
 }
 
@@ -69,11 +68,6 @@ void for_each_neighbour(std::uint64_t block_key, Visit&& visit) {
         if (x != 0 || y != 0 || z != 0) visit(Lattice{x, y, z}, lattice_key(p[0] + x, p[1] + y, p[2] + z));
 }
 
-void sort_unique(std::vector<std::uint64_t>& keys) {
-  tbb::parallel_sort(keys);
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-}
-
 /// The keys that keep(key) says yes to, in their order.
 template <typename Keep>
 std::vector<std::uint64_t> select(const std::vector<std::uint64_t>& keys, Keep&& keep) {
@@ -93,12 +87,12 @@ std::vector<std::uint64_t> select(const std::vector<std::uint64_t>& keys, Keep&&
 /// Absent neighbours of `blocks` that lie inside.
 std::vector<std::uint64_t> find_deep(const SparseField& field, const std::vector<std::uint64_t>& blocks,
                                      const SurfaceRegion& region) {
-  std::vector<std::uint64_t> absent;
-  for (const std::uint64_t block : blocks)
-    for_each_neighbour(block, [&](const Lattice&, std::uint64_t key) {
-      if (field.find(key) == SparseField::no_block) absent.push_back(key);
-    });
-  sort_unique(absent);
+  const std::vector<std::uint64_t> absent =
+      collect_keys(blocks.size(), [&](std::size_t b, std::vector<std::uint64_t>& keys) {
+        for_each_neighbour(blocks[b], [&](const Lattice&, std::uint64_t key) {
+          if (field.find(key) == SparseField::no_block) keys.push_back(key);
+        });
+      });
   return select(absent, [&](std::uint64_t key) { return !region.touches_surface(box_of(key, field.cell)); });
 }
 

@@ -18,6 +18,7 @@ namespace smelt {
 struct SparseField {
   static constexpr int block_edge = 8;
   static constexpr int block_size = block_edge * block_edge * block_edge;
+  static constexpr int edges_per_block = 3 * block_size;  ///< from each sample to the next one up along each axis
   static constexpr std::size_t no_block = static_cast<std::size_t>(-1);
 
   double cell = 0.0;               ///< distance between samples [m]
@@ -45,7 +46,7 @@ struct ChiSource {
 
 /// The blocks that hold every sample within `radius` [m] of a particle and every sample one step below those, which is
 /// what `extract_iso_surface` asks for; without values. With a `region`, only those of them that touch the surface.
-/// Throws Error when the field would need more than `memory_limit` bytes.
+/// Throws Error when the field, and a mesh made of it, would need more than `memory_limit` bytes.
 SparseField allocate_field(const ParticleBins& bins, double radius, double cell, double memory_limit,
                            const SurfaceRegion* region = nullptr);
 

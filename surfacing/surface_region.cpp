@@ -2,8 +2,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-
-#include <tbb/parallel_sort.h>
+#include "surfacing/key_lists.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,8 +19,7 @@ using Window = std::array<float, spread * spread * spread>;
 
 /// Keys of the blocks that hold a particle.
 std::vector<std::uint64_t> find_blocks(const ParticleBins& bins, double node) {
-  std::vector<std::uint64_t> keys;
-  for (std::size_t b = 0; b < bins.n_bins(); ++b) {
+  return collect_keys(bins.n_bins(), [&](std::size_t b, std::vector<std::uint64_t>& keys) {
     const Box3 box = bins.box(b);
     Lattice low, high;
     for (int a = 0; a < 3; ++a) {
@@ -30,12 +28,8 @@ std::vector<std::uint64_t> find_blocks(const ParticleBins& bins, double node) {
     }
     for (int z = low[2]; z <= high[2]; ++z)
       for (int y = low[1]; y <= high[1]; ++y)
-        for (int x = low[0]; x <= high[0]; ++x)
-          if (const std::uint64_t key = lattice_key(x, y, z); keys.empty() || keys.back() != key) keys.push_back(key);
-  }
-  tbb::parallel_sort(keys);
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  return keys;
+        for (int x = low[0]; x <= high[0]; ++x) keys.push_back(lattice_key(x, y, z));
+  });
 }
 
 /// Spreads the volumes, in cells of a node, of the particles around a block; entry (0, 0, 0) is node (-2, -2, -2).

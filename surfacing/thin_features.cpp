@@ -34,6 +34,16 @@ void for_bins(const ParticleBins& bins, Wanted&& wanted, Body&& body) {
       64);
 }
 
+constexpr float thin = 0.40f, full = 0.60f;  // fillings of what is strengthened, and of what is not
+
+/// Of chi at a particle of the given filling, iso_j of the header.
+float least_chi(float filling, const ThinFeatureSettings& s) {
+  const double half_diagonal = 0.87 * s.cell;
+  const double radius =
+      std::max(std::min(0.445 * s.h, 0.62 * s.spacing), (1.0 - smoothing_strength(filling)) * half_diagonal);
+  return static_cast<float>(s.iso) * cubic_spline(0.0f) / cubic_spline(static_cast<float>(radius / s.h));
+}
+
 }  // namespace
 
 std::vector<float> compute_filling(const ParticleBins& bins, std::span<const float> volume, double h,
@@ -53,23 +63,23 @@ std::vector<float> compute_filling(const ParticleBins& bins, std::span<const flo
 }
 
 void strengthen_thin_features(std::span<float> volume, const ParticleBins& bins, std::span<const float> filling,
-                              double h, double iso, double gain) {
+                              const ThinFeatureSettings& settings) {
   CHECK_EQ(filling.size(), volume.size());
-  constexpr float full = 0.40f;
-  const auto exponent = static_cast<float>(0.5 * gain);
+  const auto exponent = static_cast<float>(0.5 * settings.gain);
   for (std::size_t j = 0; j < volume.size(); ++j)
-    if (filling[j] < full) volume[j] *= std::pow(full / filling[j], exponent);
+    if (filling[j] < thin) volume[j] *= std::pow(thin / filling[j], exponent);
 
   // All sums first, then all changes: the order of bins must not matter.
-  const auto least = static_cast<float>(1.3 * iso);
   const auto may_be_weak = [&](std::size_t b) {
     return std::any_of(filling.begin() + bins.begin[b], filling.begin() + bins.begin[b + 1],
-                       [](float c) { return c < 1.0f; });
+                       [](float c) { return c < full; });
   };
   std::vector<float> factor(volume.size(), 1.0f);
   for_bins(bins, may_be_weak, [&](LocalParticles<0>& near, std::size_t b) {
-    sum_at_particles(near, bins, volume, b, h, [&](std::uint32_t j, float chi) {
-      if (chi < least) factor[j] = least / chi;
+    sum_at_particles(near, bins, volume, b, settings.h, [&](std::uint32_t j, float chi) {
+      if (filling[j] >= full) return;
+      if (const float least = least_chi(filling[j], settings); chi < least)
+        factor[j] = std::pow(least / chi, std::min(1.0f, (full - filling[j]) / (full - thin)));
     });
   });
   for (std::size_t j = 0; j < volume.size(); ++j) volume[j] *= factor[j];

@@ -127,6 +127,20 @@ TEST(SceneReader, ContradictionsAndNames) {
   expect_error(replaced(good_scene, "heat = {", "# heat = {"), "temperature_K", "has no heat");
 }
 
+// What the surfaces of a scene would be refused for is said before it is simulated.
+TEST(SceneReader, SurfacesAreLookedAtBeforeTheSimulation) {
+  const std::string surface = std::string(good_scene) + "[surface]\n";
+  expect_error(surface + "cell_over_spacing = 1.0\nkernel_over_spacing = 0.65\n", ":23: surface.cell_over_spacing",
+               "at most 1.5 times kernel_over_spacing = 0.65");
+  EXPECT_EQ(error_of(surface + "cell_over_spacing = 1.0\nkernel_over_spacing = 0.67\n"), "no error");
+  expect_error(surface + "vertex_colours = true\ncolour_hot_K = 300\ncolour_cold_K = 400\n",
+               ":24: surface.colour_hot_K", "must be above colour_cold_K = 400");
+  EXPECT_EQ(error_of(surface + "colour_hot_K = 300\ncolour_cold_K = 400\n"), "no error") << "nobody asks for colours";
+  std::string cold = replaced(surface, "heat = {", "# heat = {");
+  cold = replaced(cold, "temperature_K = {", "# temperature_K = {");
+  expect_error(cold + "vertex_colours = true\n", ":23: surface.vertex_colours", "no material has heat");
+}
+
 TEST(SceneReader, KeyframesAreRisingAndMoreThanOne) {
   const std::string collider = replaced(good_scene, "mesh = \"ground\"", "mesh = \"assets/sphere.obj\"\n");
   const auto keys = [&](const std::string& list) { return collider + "keyframes = [" + list + "]\n"; };

@@ -3,8 +3,10 @@
 #include "core/error.h"
 #include "core/sph/kernel.h"
 
+#include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 #include <random>
 
@@ -39,6 +41,57 @@ TEST(SparseField, ChiEqualsTheBruteForceSum) {
         double exact = 0.0;
         for (std::size_t p = 0; p < x.size(); ++p)
           exact += volume[p] * kernel.value((cell * Vec3(i, j, k) - x[bins.index[p]]).norm());
+        largest = std::max(largest, std::abs(exact - field.sample(i, j, k)));
+        n_positive += exact > 0.0;
+      }
+  EXPECT_GT(n_positive, 1000u);
+  EXPECT_LT(largest, 5e-6);
+}
+
+/// The same with an ellipsoid for every second bin, turned at random and stretched by 0.5 to 1.3 along its axes.
+TEST(SparseField, ChiOfEllipsoidsEqualsTheBruteForceSum) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> place(-1.0, 1.0), size(0.5, 1.5), stretch(0.5, 1.3), angle(0.0, 6.0);
+  const double h = 0.21, cell = 0.09;
+  std::vector<Vec3> x(300);
+  for (Vec3& p : x) p = Vec3(place(random), place(random), place(random));
+  const ParticleBins bins = sort_into_bins(x, 2.0 * h);
+  std::vector<float> volume(x.size());
+  for (float& v : volume) v = static_cast<float>(0.008 * size(random));
+  KernelShapes shapes;
+  std::vector<Mat3> metric(x.size(), Mat3::Identity() / (h * h));
+  std::vector<double> weight(x.size(), 1.0 / (h * h * h));
+  for (std::size_t b = 0; b < bins.n_bins(); ++b) {
+    shapes.first.push_back(b % 2 == 0 ? KernelShapes::isotropic : static_cast<std::uint32_t>(shapes.shape.size()));
+    if (b % 2 == 0) continue;
+    for (std::uint32_t j = bins.begin[b]; j < bins.begin[b + 1]; ++j) {
+      const Mat3 turn = Eigen::AngleAxisd(angle(random), Vec3(place(random), place(random), 1.5).normalized()).matrix();
+      const Vec3 axes = h * Vec3(stretch(random), stretch(random), stretch(random));
+      metric[j] = turn * axes.cwiseAbs2().cwiseInverse().asDiagonal() * turn.transpose();
+      weight[j] = 1.0 / axes.prod();
+      const Mat3& m = metric[j];
+      const Vec3 reach = 2.0 * m.inverse().diagonal().cwiseSqrt();
+      KernelShape s;
+      for (int n = 0; n < 6; ++n)
+        s.m[n] = static_cast<float>(n < 3 ? m(n, n) : n == 3 ? m(0, 1) : n == 4 ? m(0, 2) : m(1, 2));
+      for (int a = 0; a < 3; ++a) s.reach[a] = static_cast<float>(reach[a]);
+      s.weight = static_cast<float>(weight[j]);
+      shapes.shape.push_back(s);
+    }
+  }
+  const SparseField field = compute_chi({bins, volume, h, &shapes}, cell, 0.5f, 1e9);
+
+  const Kernel<3> kernel(1.0);
+  double largest = 0.0;
+  std::size_t n_positive = 0;
+  for (int k = -18; k <= 18; k += 2)
+    for (int j = -18; j <= 18; ++j)
+      for (int i = -18; i <= 18; i += 3) {
+        double exact = 0.0;
+        for (std::size_t p = 0; p < x.size(); ++p) {
+          const Vec3 d = cell * Vec3(i, j, k) - x[bins.index[p]];
+          exact += volume[p] * weight[p] * kernel.value(std::sqrt(d.dot(metric[p] * d)));
+        }
         largest = std::max(largest, std::abs(exact - field.sample(i, j, k)));
         n_positive += exact > 0.0;
       }

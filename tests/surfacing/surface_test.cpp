@@ -63,11 +63,16 @@ double volume_ratio(const ParticleFrame& frame, const SurfacingOptions& options 
 TEST(Surface, ParticlesOfTwoDensitiesCountByTheirOwnMass) {
   ParticleFrame frame = make_ball(6.0);
   const TriangleMesh uniform = build_surface(frame, {}).mesh;
+  const double middle = 6.3 * spacing;
+  std::size_t n_heavy = 0;
   for (std::size_t i = 0; i < frame.size(); ++i) {
-    const float factor = frame.position[i][0] < 0.0 ? 3.0f : 1.0f;
+    const float factor = frame.position[i][0] < middle ? 3.0f : 1.0f;
+    n_heavy += factor > 1.0f;
     frame.density[i] *= factor;
     frame.masses.push_back(static_cast<float>(frame.mass) * factor);
   }
+  ASSERT_GT(n_heavy, frame.size() / 3);
+  ASSERT_LT(n_heavy, 2 * frame.size() / 3);
   const TriangleMesh mixed = build_surface(frame, {}).mesh;
   ASSERT_EQ(mixed.triangles, uniform.triangles);
   for (std::size_t v = 0; v < mixed.vertices.size(); ++v)
@@ -108,20 +113,58 @@ TEST(Surface, ThinFeaturesKeepTheirVolumeAndPiece) {
   SurfacingOptions bare;
   bare.thin_feature_gain = 0.0;
   bare.anisotropic = false;
-  EXPECT_THROW(build_surface(make_lattice(Vec3(1, 1, 40)), bare), Error);
+  const SurfaceMesh nothing = build_surface(make_lattice(Vec3(1, 1, 40)), bare);
+  EXPECT_TRUE(nothing.mesh.triangles.empty() && nothing.mesh.vertices.empty() && nothing.velocity.empty());
 }
 
-TEST(Surface, NoParticleDisappearsWhateverTheKernelAndIsoValue) {
+TEST(Surface, NoParticleDisappearsWhateverTheKernelTheIsoValueAndTheCell) {
   std::vector<Vec3> x;
-  for (int i = 0; i < 60; ++i) x.push_back(spacing * Vec3(6.3 * i, 0.71 * i, -1.37 * i));
-  for (const double h : {0.8, 1.0, 1.2, 1.5})
-    for (const double iso : {0.3, 0.5, 0.8}) {
-      SurfacingOptions options;
-      options.kernel_over_spacing = h;
-      options.iso_value = iso;
+  for (int i = 0; i < 40; ++i) x.push_back(spacing * Vec3(8.3 * i, 0.71 * i, -1.37 * i));
+  for (const double gain : {0.1, 1.0})
+    for (const double h : {0.6, 1.0, 1.5, 3.0})
+      for (const double iso : {0.1, 0.5, 0.8})
+        for (const double cell : {0.5, 0.75, 1.0, 1.25, 1.5}) {
+          if (cell > 1.5 * h) continue;
+          SurfacingOptions options;
+          options.thin_feature_gain = gain;
+          options.kernel_over_spacing = h;
+          options.iso_value = iso;
+          options.cell_over_spacing = cell;
+          const SurfaceMesh surface = build_surface(make_frame(x), options);
+          EXPECT_EQ(compute_topology(surface.mesh).n_components, x.size())
+              << "gain " << gain << " h " << h << " iso " << iso << " cell " << cell;
+        }
+}
+
+// A wide kernel of a height that any iso-value is below would make drops of 3 and 10 particles' volumes.
+TEST(Surface, WideKernelsDoNotBlowUpDrops) {
+  std::vector<Vec3> x;
+  for (int i = 0; i < 40; ++i) x.push_back(spacing * Vec3(12.3 * i, 0.71 * i, -1.37 * i));
+  for (const double h : {1.5, 2.0, 3.0}) {
+    SurfacingOptions options;
+    options.kernel_over_spacing = h;
+    options.cell_over_spacing = 0.25;
+    EXPECT_NEAR(volume_ratio(make_frame(x), options), 0.9, 0.1) << h;
+  }
+}
+
+TEST(Surface, AVertexFartherOutThanAnyKernelHasAttributes) {
+  std::vector<Vec3> x;
+  for (int i = 0; i < 300; ++i) x.push_back(spacing * Vec3(4.27 * (i % 7), 4.71 * (i / 7 % 7), 4.37 * (i / 49)));
+  SurfacingOptions wide, preview;
+  wide.cell_over_spacing = 1.5;
+  wide.iso_value = 0.07;
+  preview.cell_over_spacing = 0.75;
+  preview.iso_value = 0.01;
+  for (SurfacingOptions options : {wide, preview}) {
+    options.anisotropic = false;
+    for (double gain : {0.0, 1.0}) {
+      options.thin_feature_gain = gain;
       const SurfaceMesh surface = build_surface(make_frame(x), options);
-      EXPECT_EQ(compute_topology(surface.mesh).n_components, x.size()) << h << " " << iso;
+      for (const Vec3f& v : surface.velocity) ASSERT_LT((v - Vec3f(1.0f, -2.0f, 0.5f)).norm(), 1e-5f);
+      for (const float t : surface.temperature) ASSERT_NEAR(t, 350.0f, 1e-3f);
     }
+  }
 }
 
 TEST(Surface, AThreadBetweenTwoBallsIsNotSmoothedAway) {
@@ -191,31 +234,62 @@ TEST(Surface, SameBytesOnOneAndTwoThreads) {
 
 TEST(Surface, RefusesBadInput) {
   EXPECT_THROW(build_surface(make_frame({}), {}), Error);
-  ParticleFrame frame = make_lattice(Vec3(4, 4, 4));
-  frame.position[5][1] = std::numeric_limits<double>::quiet_NaN();
-  try {
-    build_surface(frame, {});
-    ADD_FAILURE() << "a position that is not a number was accepted";
-  } catch (const Error& error) {
-    EXPECT_NE(std::string(error.what()).find("particle 5"), std::string::npos) << error.what();
-  }
-  frame = make_lattice(Vec3(4, 4, 4));
-  frame.density[3] = 0.0f;
-  EXPECT_THROW(build_surface(frame, {}), Error);
+  const auto expect_refused = [](void (*break_it)(ParticleFrame&), const std::string& what) {
+    ParticleFrame frame = make_lattice(Vec3(4, 4, 4));
+    for (std::size_t i = 0; i < frame.size(); ++i) frame.id[i] = static_cast<std::int32_t>(1000 + i);
+    frame.masses.assign(frame.size(), static_cast<float>(frame.mass));
+    frame.viscosity.assign(frame.size(), 1.0f);
+    frame.rest.assign(frame.size(), Vec3f::Zero());
+    break_it(frame);
+    try {
+      build_surface(frame, {});
+      ADD_FAILURE() << "accepted: " << what;
+    } catch (const Error& error) {
+      EXPECT_NE(std::string(error.what()).find("frame 7: particle 1005 " + what), std::string::npos) << error.what();
+    }
+  };
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
+  expect_refused([](ParticleFrame& p) { p.position[5][1] = nan; }, "has the position");
+  expect_refused([](ParticleFrame& p) { p.position[5][2] = -1e9; }, "is at");
+  expect_refused([](ParticleFrame& p) { p.density[5] = 0.0f; }, "has the density 0 kg/m3: it must be positive");
+  expect_refused([](ParticleFrame& p) { p.density[5] = infinity; }, "has the density inf");
+  expect_refused([](ParticleFrame& p) { p.masses[5] = -1.0f; }, "has the mass -1 kg");
+  expect_refused([](ParticleFrame& p) { p.velocity[5][0] = infinity; }, "has the velocity (inf, -2, 0.5) m/s");
+  expect_refused([](ParticleFrame& p) { p.temperature[5] = nan; }, "has the temperature nan K: it must be finite");
+  expect_refused([](ParticleFrame& p) { p.viscosity[5] = infinity; }, "has the viscosity inf Pa s");
+  expect_refused([](ParticleFrame& p) { p.rest[5][2] = nan; }, "has the rest position");
+  // Of several the first.
+  expect_refused([](ParticleFrame& p) { p.density[5] = p.density[60] = p.density[6] = 0.0f; }, "has the density");
 
-  frame = make_lattice(Vec3(4, 4, 4));
+  ParticleFrame frame = make_lattice(Vec3(4, 4, 4));
   for (auto break_it : std::initializer_list<void (*)(SurfacingOptions&)>{
            [](SurfacingOptions& o) { o.iso_value = 0.0; }, [](SurfacingOptions& o) { o.iso_value = 1.0; },
            [](SurfacingOptions& o) { o.cell_over_spacing = 0.0; },
            [](SurfacingOptions& o) { o.cell_over_spacing = 1e-5; },
            [](SurfacingOptions& o) { o.kernel_over_spacing = -1.0; },
-           [](SurfacingOptions& o) { o.smoothing_passes = -1; },
+           [](SurfacingOptions& o) { o.cell_over_spacing = 1.6; }, [](SurfacingOptions& o) { o.smoothing_passes = -1; },
            [](SurfacingOptions& o) { o.thin_feature_gain = std::numeric_limits<double>::quiet_NaN(); }}) {
     SurfacingOptions options;
     break_it(options);
     EXPECT_THROW(build_surface(frame, options), Error);
   }
   EXPECT_THROW(build_surface(make_frame(std::vector<Vec3>(20, Vec3(1, 2, 3))), {}), Error) << "all at one place";
+}
+
+// Measured at 11 MB; chi alone, without the mesh around it, is 2 MB.
+TEST(Surface, RefusesWhatWouldNotFitIntoMemory) {
+  const ParticleFrame frame = make_ball(20.0);
+  SurfacingOptions options;
+  options.memory_limit_bytes = 20e6;
+  EXPECT_FALSE(build_surface(frame, options).mesh.triangles.empty());
+  options.memory_limit_bytes = 8e6;
+  try {
+    build_surface(frame, options);
+    ADD_FAILURE() << "8 MB were enough";
+  } catch (const Error& error) {
+    EXPECT_NE(std::string(error.what()).find("0.008 GB"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("surface.cell_over_spacing"), std::string::npos) << error.what();
+  }
 }
 
 // Loose webs of particles: threads, holes and drops, where smoothing is weak nearly everywhere and volumes are hard to
