@@ -8,6 +8,7 @@
 
 #include "core/sph/pair_kernels-inl.h"
 #include "core/sph/pair_sums.h"
+#include "core/sph/particles.h"
 
 #include <hwy/highway.h>
 
@@ -265,6 +266,15 @@ HWY_INLINE Simd<Real> dot(const Simd<Real> (&a)[Dim], const Simd<Real> (&b)[Dim]
   auto sum = hn::Mul(a[0], b[0]);
   for (int k = 1; k < Dim; ++k) sum = hn::MulAdd(a[k], b[k], sum);
   return sum;
+}
+
+/// Adds sum V_j w (x_j - x_i) (x) grad_w_ij for a vector of neighbours, `weight` being V_j w F, to packed sums.
+template <int Dim, typename Real, typename Pair>
+HWY_INLINE void add_position_moment(const Pair& pair, Simd<Real> weight, Simd<Real>* moment) {
+  for (int m = 0; m < n_symmetric<Dim>; ++m) {
+    const auto [a, b] = symmetric_entry<Dim>(m);
+    moment[m] = hn::NegMulAdd(pair.x_ij[a], hn::Mul(weight, pair.x_ij[b]), moment[m]);
+  }
 }
 
 /// Calls run(std::type_identity<the pair kernel of `type`>).

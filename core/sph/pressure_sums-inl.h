@@ -32,14 +32,8 @@ void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const Neighbour
       const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(dot<Dim, Real>(x_ij, x_ij)));
       const auto p_j = load_field<Dim, Real, Fields::pressure_at>(fields, index);
       const auto p_ji = hn::Sub(p_j, hn::Set(d, record_i[Fields::pressure_at]));
-      for (int b = 0; b < Dim; ++b) {
-        const auto weighted = hn::Mul(volume_f, x_ij[b]);
-        sum[b] = hn::MulAdd(p_ji, weighted, sum[b]);
-        for (int a = 0; a <= b; ++a) {
-          auto& moment = sum[Dim + symmetric_index<Dim>(a, b)];
-          moment = hn::NegMulAdd(x_ij[a], weighted, moment);
-        }
-      }
+      for (int a = 0; a < Dim; ++a) sum[a] = hn::MulAdd(p_ji, hn::Mul(volume_f, x_ij[a]), sum[a]);
+      add_position_moment<Dim, Real>(pair, volume_f, sum + Dim);
     };
     Real total[Dim + n_symmetric<Dim>];
     sum_row<Dim + n_symmetric<Dim>>(lists.read(i, buffer.data()), total, add_pairs);
@@ -54,7 +48,6 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
   const Tag<Real> d;
   const PairKernel kernel(h);
   constexpr int stride = gradient_stride<Dim>;
-  using Fields = PairFields<Dim, Real>;
   const auto soft = hn::Set(d, static_cast<Real>(0.01 * h * h));
   const auto half = hn::Set(d, Real(0.5));
   std::vector<std::int32_t> buffer(lists.room());
@@ -64,12 +57,11 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
       const Neighbours<Dim, Real> pair(record_i, fields.records.data(), index);
       const auto r2 = dot<Dim, Real>(pair.x_ij, pair.x_ij);
-      Simd<Real> gradient_j[padded_fields(Dim)];
-      load_fields<stride, Dim>(gradients.data(), 0, index, gradient_j);
+      Simd<Real> gradient_j[padded_fields(stride)];  // and the pressure
+      load_fields<stride, stride>(gradients.data(), 0, index, gradient_j);
       Simd<Real> gradient[Dim];
       for (int a = 0; a < Dim; ++a) gradient[a] = hn::Add(hn::Set(d, gradient_i[a]), gradient_j[a]);
-      const auto p_j = load_field<Dim, Real, Fields::pressure_at>(fields, index);
-      const auto p_ji = hn::Sub(p_j, hn::Set(d, record_i[Fields::pressure_at]));
+      const auto p_ji = hn::Sub(gradient_j[Dim], hn::Set(d, gradient_i[Dim]));
       const auto unexplained = hn::MulAdd(half, dot<Dim, Real>(gradient, pair.x_ij), p_ji);
       const auto weight = hn::Div(hn::Mul(hn::Mul(pair.volume, kernel.gradient_over_r(r2)), r2), hn::Add(r2, soft));
       // F is negative: the sign of a Laplacian.

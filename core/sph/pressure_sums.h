@@ -19,14 +19,14 @@ void compute_pressure_gradient_sums(const PairFields<Dim, Real>& fields, const N
                                     double smoothing_length, std::size_t begin, std::size_t end,
                                     PressureGradientSums<Dim, Real>* sums);
 
-/// Numbers per particle in the array of gradients below.
+/// Numbers per particle in the array of gradients below: g [Pa/m] and p [Pa].
 template <int Dim>
-inline constexpr int gradient_stride = Dim == 3 ? 4 : Dim;
+inline constexpr int gradient_stride = Dim + 1;
 
 /// 2 sum V_j [p_j - p_i + (g_i + g_j)/2 . x_ij] x_ij.grad_w_ij / (r^2 + 0.01 h^2) [Pa/m^2], with the sign of a
 /// Laplacian: a diffusion of pressure (and so density) on what its gradients g [Pa/m] do not explain, so that a linear
-/// field, such as water's at rest, is left alone  [Antuono 2010]. `gradients`: one of gradient_stride numbers per
-/// record of `fields`. `sums`: one entry for each of them.
+/// field, such as water's at rest, is left alone  [Antuono 2010]. `gradients`: gradient_stride numbers per record of
+/// `fields`. `sums`: one entry for each of them.
 template <int Dim, typename Real>
 void compute_pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vector<Real>& gradients,
                                      const NeighbourLists& lists, KernelType kernel, double smoothing_length,

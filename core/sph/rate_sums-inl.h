@@ -42,15 +42,6 @@ HWY_INLINE void add_velocity_moment(const Pair& pair, Simd<Real> weight, Simd<Re
   }
 }
 
-/// Adds sum V_j w (x_j - x_i) (x) grad_w_ij.
-template <int Dim, typename Real, typename Pair>
-HWY_INLINE void add_position_moment(const Pair& pair, Simd<Real> weight, Simd<Real>* moment) {
-  for (int m = 0; m < n_symmetric<Dim>; ++m) {
-    const auto [a, b] = symmetric_entry<Dim>(m);
-    moment[m] = hn::NegMulAdd(pair.x_ij[a], hn::Mul(weight, pair.x_ij[b]), moment[m]);
-  }
-}
-
 /// What the stress of particle `i` sees where some neighbour is too thin for it to see in full.
 template <typename PairKernel, int Dim, typename Real>
 SightedSums<Dim, Real> sighted_sums(const PairFields<Dim, Real>& fields, const PairKernel& kernel,

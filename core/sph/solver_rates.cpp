@@ -134,8 +134,9 @@ void Solver<Dim, Real>::evaluate_pressure_gradients() {
   constexpr std::size_t stride = gradient_stride<Dim>;
   const std::size_t n = particles_.size();
   const auto pack = [&](std::size_t i, const Vec<Dim>& gradient) {
-    for (int a = 0; a < Dim; ++a)
-      packed_gradient_[i * stride + static_cast<std::size_t>(a)] = static_cast<Real>(gradient[a]);
+    Real* packed = packed_gradient_.data() + i * stride;
+    for (int a = 0; a < Dim; ++a) packed[a] = static_cast<Real>(gradient[a]);
+    packed[Dim] = fields_.record(i)[PairFields<Dim, Real>::pressure_at];
   };
   const bool everywhere = terms_.diffusion && terms_.pair.stress;
   const auto evaluate = [&](std::size_t begin, std::size_t end) {
