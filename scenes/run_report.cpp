@@ -80,6 +80,7 @@ void RunReport::set_run(const std::string& scene_text, std::uint64_t scene_hash,
   root["particle_spacing_m"] = spacing;
   root["body_volume_m3"] = body_volume;
   if (!root.contains("frames")) root["frames"] = ordered_json::array();
+  save();
 }
 
 void RunReport::set_simulated(int frame, double time, const StepStatistics& steps, const Diagnostics<3>& d,
@@ -145,6 +146,17 @@ std::optional<std::uint64_t> RunReport::settings_of(int frame, const std::string
   const ordered_json& entry = root["frames"][k];
   if (!entry.contains(stage) || !entry[stage].contains("settings")) return std::nullopt;
   return std::stoull(entry[stage]["settings"].get<std::string>(), nullptr, 16);
+}
+
+bool RunReport::is_of_smelt() const {
+  const ordered_json& root = document_->root;
+  return root.is_object() && (root.contains("smelt") || root.contains("frames"));
+}
+
+std::optional<std::uint64_t> RunReport::simulation_hash() const {
+  const ordered_json& root = document_->root;
+  if (!root.is_object() || !root.contains("simulation_hash")) return std::nullopt;
+  return std::stoull(root["simulation_hash"].get<std::string>(), nullptr, 16);
 }
 
 void RunReport::begin(int frame, const std::string& stage) {
