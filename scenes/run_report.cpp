@@ -2,13 +2,13 @@
 
 #include "core/hash.h"
 #include "io/atomic_file.h"
+#include "scenes/machine.h"
 #include "scenes/version.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <fstream>
 #include <thread>
 
 namespace smelt {
@@ -27,13 +27,6 @@ struct RunReport::Document {
 };
 
 namespace {
-
-std::string cpu_name() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.starts_with("model name") && line.find(": ") != std::string::npos) return line.substr(line.find(": ") + 2);
-  return "unknown";
-}
 
 ordered_json vector_json(const Vec3& v) {
   return {v[0], v[1], v[2]};
