@@ -206,6 +206,7 @@ TEST_F(CommandLine, BenchAnswersForPeopleAndMachines) {
   EXPECT_NE(run({"bench", "thesis", "--shot", "wall", "--json"}).out.find("\"times_as_fast\""), std::string::npos);
   EXPECT_EQ(run({"bench", "thesis", "--shot", "teapot"}).status, 2);
   EXPECT_EQ(run({"bench"}).status, 2);
+  EXPECT_EQ(run({"bench", "--calibrate", "step"}).status, 2);
 }
 
 TEST_F(CommandLine, ReportNamesItsCasesAndWhatItNeeds) {
@@ -240,6 +241,51 @@ TEST_F(CommandLine, AFullDiskIsExitThreeAndFinishedFramesStay) {
   EXPECT_EQ(result.status, 3) << result.err;
   EXPECT_NE(result.err.find("particles.0001.vdb"), std::string::npos) << result.err;
   EXPECT_FALSE(fs::exists(output("out") + "/particles/particles.0001.vdb")) << "half a file is worse than none";
+}
+
+void redirect_to(int fd, const char* path) {
+  const int file = open(path, O_WRONLY);
+  dup2(file, fd);
+  close(file);
+}
+
+// What goes to stdout is the result: where it cannot be written the command has failed.
+TEST_F(CommandLine, AFullStdoutIsExitThree) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  const std::string bunny = source_folder().string() + "/assets/bunny.obj";
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", bunny}, {"scene-reference"}, {"--help"}, {"--version"}}) {
+    const Result result = run(arguments, [] { redirect_to(STDOUT_FILENO, "/dev/full"); });
+    EXPECT_EQ(result.status, 3) << arguments[0];
+    EXPECT_NE(result.err.find("standard output"), std::string::npos) << arguments[0] << ": " << result.err;
+    EXPECT_NE(result.err.find("No space left"), std::string::npos) << arguments[0] << ": " << result.err;
+    EXPECT_EQ(run(arguments, [] { close(STDOUT_FILENO); }).status, 3) << arguments[0];
+  }
+}
+
+// What goes to stderr is talk: a shot goes on without it.
+TEST_F(CommandLine, AStderrThatCannotBeWrittenStopsNothing) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  close(ends[0]);
+  const std::vector<std::function<void()>> ways = {[] { close(STDERR_FILENO); }, [&] { dup2(ends[1], STDERR_FILENO); },
+                                                   [] { redirect_to(STDERR_FILENO, "/dev/full"); }};
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    // The second run says that it moved the first one aside.
+    for (int again = 0; again < 2; ++again)
+      EXPECT_EQ(run({"simulate", small_scene(), "-o", output("out"), "--frames", "1"}, ways[k]).status, 0) << k;
+    EXPECT_EQ(run({"simulate", small_scene(), "-o", output("out"), "--set", "shot.fps=-1"}, ways[k]).status, 3) << k;
+    EXPECT_NO_THROW(read_particles(output("out") + "/particles/particles.0001.vdb")) << k;
+  }
+  close(ends[1]);
+}
+
+// Where nobody asks whether to stop, an interrupt ends the program by itself.
+TEST_F(CommandLine, AnInterruptEndsABench) {
+  const pid_t child = start({"bench", "pairs", "--particles", "1000000"}, [] { signal(SIGINT, SIG_DFL); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  kill(child, SIGINT);
+  EXPECT_EQ(finish(child).status, 128 + SIGINT);
 }
 
 TEST_F(CommandLine, AFolderThatCannotBeMadeIsExitThree) {
@@ -303,6 +349,7 @@ TEST_F(CommandLine, PicturesThatCannotBeDrawnNameTheirKeyAndFile) {
                  {"environment.image", "no.exr"});
   expect_refusal({"--colour-by", "speed"}, {"--colour-by", "--look diagnostic"});
   expect_refusal({"--look", "diagnostic", "--colour-range", "5:1"}, {"--colour-range 5:1", "below"});
+  expect_refusal({"--look", "diagnostic", "--resume"}, {"--resume", "leave it out"});
   expect_refusal({"--sheet", "4y3"}, {"--sheet 4y3", "4x3"});
   // Rest positions asked for after the simulation: the caches have none.
   expect_refusal({"--set", "particles.rest_position=true", "--set", "look.crust.plate_m=0.1"},
@@ -521,6 +568,12 @@ TEST_F(CommandLine, CheckAndInfoAnswer) {
   EXPECT_NE(mesh.out.find("closed     yes"), std::string::npos) << mesh.out;
   EXPECT_NE(mesh.out.find("194.288"), std::string::npos) << mesh.out;
   EXPECT_EQ(run({"info", small_scene()}).status, 3);
+  fs::copy_file(source_folder() / "assets/bunny.obj", folder_ / "BUNNY.OBJ");
+  EXPECT_EQ(run({"info", output("BUNNY.OBJ")}).out, mesh.out);
+  write_obj(folder_ / "empty.obj", {});
+  const Result empty = run({"info", output("empty.obj")});
+  EXPECT_EQ(empty.status, 0) << empty.err;
+  EXPECT_NE(empty.out.find("vertices   0\n"), std::string::npos) << empty.out;
 }
 
 // Particles that come and go: caches, checkpoints, surfaces, pictures and the report with another number of them in
