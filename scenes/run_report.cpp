@@ -2,6 +2,7 @@
 
 #include "core/hash.h"
 #include "io/atomic_file.h"
+#include "io/vector_json.h"
 #include "scenes/machine.h"
 #include "scenes/version.h"
 
@@ -27,10 +28,6 @@ struct RunReport::Document {
 };
 
 namespace {
-
-ordered_json vector_json(const Vec3& v) {
-  return {v[0], v[1], v[2]};
-}
 
 ordered_json cost_json(const StageCost& cost) {
   return {{"seconds", cost.seconds}, {"bytes", cost.bytes}};
@@ -90,7 +87,7 @@ void RunReport::set_simulated(int frame, double time, const StepStatistics& step
                           {"max", steps.max_dt},
                           {"set_by", terms}}},
                         {"mass_kg", d.mass},
-                        {"momentum_kg_m_s", {d.momentum[0], d.momentum[1], d.momentum[2]}},
+                        {"momentum_kg_m_s", vector_json(d.momentum)},
                         {"kinetic_energy_J", d.kinetic_energy},
                         {"potential_energy_J", d.potential_energy},
                         {"energy_J", d.kinetic_energy + d.potential_energy},
