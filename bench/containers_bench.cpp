@@ -21,14 +21,22 @@ int main(int argc, char** argv) {
       "us a move |\n");
   fmt::print("|---|---|---|---|---|---|---|---|---|\n");
   bool sound = true;
+  std::string names;
+  int n_shaken = 0;
   for (const auto& make : {make_closed_box, make_funnel, make_sieve, make_bowl, make_dragon}) {
     const Container container = make();
+    names += " " + container.name;
     if (argc > 3 && container.name != argv[3]) continue;
+    ++n_shaken;
     const Shaken seen = shake(container, options);
     fmt::print("| {} | {} | {} | {} | {} | {:.2g} | {:.1f} % | {:.2f} | {:.2f} |\n", container.name,
                container.facets.size(), seen.n_particles, options.n_steps, seen.n_lost, seen.deepest, 100.0 * seen.hits,
                seen.way, 1e6 * seen.seconds / (static_cast<double>(seen.n_particles) * options.n_steps));
     sound = sound && seen.n_lost == 0 && seen.deepest < 1e-6;
+  }
+  if (n_shaken == 0) {
+    fmt::print(stderr, "bench_containers: there is no container \"{}\"; there are{}\n", argv[3], names);
+    return 2;
   }
   return sound ? 0 : 1;
 }

@@ -1,5 +1,7 @@
 #include "bench/machine_peaks.h"
 
+#include "bench/best_seconds.h"
+
 // As core/sph/pair_sums.cpp.
 #define HWY_BASELINE_TARGETS HWY_AVX2
 #define HWY_DISABLED_TARGETS HWY_AVX3_DL
@@ -11,7 +13,6 @@
 // clang-format on
 
 #include <algorithm>
-#include <chrono>
 #include <cstddef>
 #include <vector>
 
@@ -68,27 +69,16 @@ HWY_EXPORT(sum_all);
 namespace {
 
 volatile float kept = 0.0f;
-
-/// Least time of five runs [s].
-template <typename Run>
-double best_seconds(const Run& run) {
-  double best = 1e30;
-  for (int k = 0; k < 5; ++k) {
-    const auto start = std::chrono::steady_clock::now();
-    kept = kept + run();
-    best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  }
-  return best;
-}
+constexpr int n_runs = 5;
 
 double read_bytes_per_second(std::size_t n_bytes) {
   const std::vector<float> values(n_bytes / sizeof(float), 1.0f);
   const std::size_t n_passes = std::max<std::size_t>(1, (std::size_t{1} << 28) / n_bytes);
-  const double seconds = best_seconds([&] {
+  const double seconds = best_seconds(n_runs, [&] {
     float sum = 0.0f;
     for (std::size_t pass = 0; pass < n_passes; ++pass)
       sum += HWY_DYNAMIC_DISPATCH(sum_all)(values.data(), values.size());
-    return sum;
+    kept = kept + sum;
   });
   return static_cast<double>(n_passes * n_bytes) / seconds;
 }
@@ -99,7 +89,7 @@ MachinePeaks measure_machine_peaks() {
   MachinePeaks peaks;
   constexpr std::size_t n_rounds = 4'000'000;
   peaks.flops = HWY_DYNAMIC_DISPATCH(flops_a_round)() * n_rounds /
-                best_seconds([] { return HWY_DYNAMIC_DISPATCH(multiply_add)(n_rounds); });
+                best_seconds(n_runs, [] { kept = kept + HWY_DYNAMIC_DISPATCH(multiply_add)(n_rounds); });
   peaks.l1_bytes = read_bytes_per_second(std::size_t{24} << 10);
   peaks.l2_bytes = read_bytes_per_second(std::size_t{384} << 10);
   peaks.l3_bytes = read_bytes_per_second(std::size_t{6} << 20);

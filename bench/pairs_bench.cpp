@@ -1,11 +1,11 @@
 #include "bench/pairs_bench.h"
 
+#include "bench/best_seconds.h"
 #include "core/sph/pair_sums.h"
 
 #include <hwy/targets.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -59,27 +59,17 @@ Block make_jittered_block(std::size_t n_particles) {
   return block;
 }
 
-template <typename Run>
-double best_seconds(const Run& run) {
-  double best = 1e30;
-  for (int k = 0; k < 7; ++k) {
-    const auto start = std::chrono::steady_clock::now();
-    run();
-    best = std::min(best, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
-  }
-  return best;
-}
-
 void time_passes(const Block& block, const std::string& instructions, std::vector<PassTiming>& passes) {
   PairTerms terms;
   terms.stress = terms.hourglass = terms.xsph = true;
   terms.heat = HeatTerms::uniform;
   std::vector<RateSums<3, float>> rates(block.n);
   std::vector<std::array<float, 3>> acceleration(block.n);
-  const double rates_seconds = best_seconds([&] {
+  constexpr int n_runs = 7;
+  const double rates_seconds = best_seconds(n_runs, [&] {
     compute_rate_sums<3, float>(block.fields, block.lists, terms, smoothing_length, 0, block.n, rates.data());
   });
-  const double forces_seconds = best_seconds([&] {
+  const double forces_seconds = best_seconds(n_runs, [&] {
     compute_force_sums<3, float>(block.fields, block.lists, terms, {smoothing_length, 0.1, 10.0}, 0, block.n,
                                  acceleration.data());
   });

@@ -17,11 +17,18 @@
 #include <CLI/CLI.hpp>
 #include <tbb/global_control.h>
 
+#include <cerrno>
 #include <charconv>
+#include <csignal>
 #include <cstdio>
+#include <cstring>
+#include <fcntl.h>
 #include <functional>
 #include <memory>
+#include <sstream>
+#include <system_error>
 #include <tuple>
+#include <unistd.h>
 
 namespace smelt {
 
@@ -79,6 +86,10 @@ std::pair<T, T> parse_pair(const char* option, const std::string& text, char sep
 PictureRequest to_request(const SceneOptions& o) {
   PictureRequest request;
   request.diagnostic = o.look == "diagnostic";
+  if (request.diagnostic && o.resume)
+    fail(
+        "--resume does not go with --look diagnostic: the colours of a picture depend on the other frames, so all are "
+        "drawn; leave it out");
   for (const auto& [given, option] :
        {std::pair{!o.colour_by.empty(), "--colour-by"}, std::pair{!o.colour_range.empty(), "--colour-range"},
         std::pair{!o.overlay.empty(), "--surface"}})
@@ -117,7 +128,7 @@ void print_check(const SceneOptions& o) {
   const Scene scene = read_scene(o.scene, o.overrides);
   const auto threads = limit_threads(o.threads);
   const SceneForecast f = forecast_scene(scene);
-  for (const std::string& warning : f.warnings) fmt::print(stderr, "smelt: warning: {}\n", warning);
+  for (const std::string& warning : f.warnings) print_to_stderr(fmt::format("smelt: warning: {}\n", warning));
   fmt::print(
       "scene       {}: {} frames at {} fps\nparticles   {}{}, {:.4g} m apart\nvolume      {:.6g} m3\nsound speed "
       "{:.4g} m/s\ntime step   {:.3g} s, set by the {} term\nsteps       {:.0f} at that time step\nmemory      {:.1f} "
@@ -188,6 +199,8 @@ void add_bench(CLI::App& app, BenchOptions& o, std::function<void()>& work) {
   bench->require_subcommand(0, 1);
   bench->add_flag("--calibrate", o.calibrate, "remember how fast it is while nothing else runs, for `smelt check`");
   bench->callback([&o, &work, bench] {
+    if (o.calibrate && !bench->get_subcommands().empty())
+      throw CLI::ExcludesError("--calibrate", bench->get_subcommands().front()->get_name());
     if (o.calibrate)
       work = [] { fmt::print("{:.4g} s for the fixed work, kept in {}\n", calibrate_pace(), pace_file().string()); };
     else if (bench->get_subcommands().empty())
@@ -235,6 +248,22 @@ void add_picture_options(CLI::App& command, SceneOptions& o) {
 void add_scene_options(CLI::App& command, SceneOptions& o, bool makes_frames) {
   command.add_option("scene", o.scene, "scene file (.toml)")->required();
   add_common_options(command, o, makes_frames);
+}
+
+/// Where stdin, stdout or stderr is closed, a file opened later would take its place and get what is printed. The
+/// stand-in cannot be written to, so that results which go nowhere are still an error.
+void keep_standard_streams_apart() {
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+    if (fcntl(fd, F_GETFD) == -1 && errno == EBADF && open("/dev/null", O_RDONLY) != fd)
+      throw Error(fmt::format("file descriptor {} is closed, and /dev/null cannot be opened in its place", fd));
+}
+
+/// Throws WriteError where not all that was printed arrived: a full disk, a closed pipe.
+void check_stdout() {
+  errno = 0;
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+  throw WriteError(fmt::format("standard output: cannot be written: {}; send it elsewhere",
+                               errno == 0 ? "an earlier write failed" : std::strerror(errno)));
 }
 
 int run_parsed(int argc, char** argv) {
@@ -297,9 +326,16 @@ int run_parsed(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? exit_done : exit_usage;
+    std::ostringstream out, err;
+    const bool help = app.exit(error, out, err) == 0;
+    print_to_stderr(err.str());
+    fmt::print("{}", out.str());
+    check_stdout();
+    if (!help) return exit_usage;
+    return exit_done;
   }
   work();
+  check_stdout();
   return exit_done;
 }
 
@@ -307,7 +343,7 @@ int run_parsed(int argc, char** argv) {
 
 int run_command_line(int argc, char** argv) {
   const auto report = [](const char* kind, const std::exception& error, ExitCode code) {
-    fmt::print(stderr, "smelt: {}{}\n", kind, error.what());
+    print_to_stderr(fmt::format("smelt: {}{}\n", kind, error.what()));
     return static_cast<int>(code);
   };
   try {
@@ -315,7 +351,10 @@ int run_command_line(int argc, char** argv) {
       throw Error(
           "this machine's processor has no AVX2 and FMA instructions, which smelt needs (any x86 processor since about "
           "2014 has)");
-    install_signal_handlers();
+    keep_standard_streams_apart();
+    // A file past the system's limit and a closed pipe are errors of who writes, not the end of the program.
+    std::signal(SIGXFSZ, SIG_IGN);
+    std::signal(SIGPIPE, SIG_IGN);
     return run_parsed(argc, argv);
   } catch (const DivergedError& error) {
     return report("", error, exit_diverged);
@@ -325,6 +364,10 @@ int run_command_line(int argc, char** argv) {
     return report("error: ", error, exit_bad_input);
   } catch (const std::bad_alloc& error) {
     return report("error: out of memory; fewer particles or a coarser surface would do: ", error, exit_bad_input);
+  } catch (const std::system_error& error) {
+    if (std::ferror(stdout) == 0) return report("internal error (please report it): ", error, exit_internal);
+    // Printing threw.
+    return report("error: standard output: ", error, exit_bad_input);
   } catch (const std::exception& error) {
     return report("internal error (please report it): ", error, exit_internal);
   }

@@ -33,17 +33,21 @@ std::size_t terminal_width() {
 
 }  // namespace
 
-void install_signal_handlers() {
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
-  std::signal(SIGXFSZ, SIG_IGN);
-  std::signal(SIGPIPE, SIG_IGN);
+void print_to_stderr(const std::string& text) {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
 }
 
-TerminalProgress::TerminalProgress() : on_terminal_(isatty(STDERR_FILENO) != 0) {}
+TerminalProgress::TerminalProgress() : on_terminal_(isatty(STDERR_FILENO) != 0) {
+  stop_requested = 0;
+  std::signal(SIGINT, request_stop);
+  std::signal(SIGTERM, request_stop);
+}
 
 TerminalProgress::~TerminalProgress() {
   clear_line();
+  std::signal(SIGINT, SIG_DFL);
+  std::signal(SIGTERM, SIG_DFL);
 }
 
 void TerminalProgress::update(const ProgressState& state) {
@@ -69,14 +73,13 @@ void TerminalProgress::update(const ProgressState& state) {
       fmt::format("{:<8} [{:=<{}}{:<{}}] frame {}/{}  {}  ETA {}", state.stage, "", filled,
                   filled < bar_width ? ">" : "", bar_width - filled, state.frame, state.last_frame, state.details, eta);
   line.resize(std::min(line.size(), terminal_width() - 1));
-  fmt::print(stderr, "\r\033[K{}", line);
-  std::fflush(stderr);
+  print_to_stderr("\r\033[K" + line);
   line_shown_ = true;
 }
 
 void TerminalProgress::message(const std::string& text) {
   clear_line();
-  fmt::print(stderr, "smelt: {}\n", text);
+  print_to_stderr(fmt::format("smelt: {}\n", text));
 }
 
 bool TerminalProgress::should_stop() {
@@ -84,7 +87,7 @@ bool TerminalProgress::should_stop() {
 }
 
 void TerminalProgress::clear_line() {
-  if (line_shown_) fmt::print(stderr, "\r\033[K");
+  if (line_shown_) print_to_stderr("\r\033[K");
   line_shown_ = false;
 }
 

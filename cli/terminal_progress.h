@@ -8,15 +8,18 @@
 
 namespace smelt {
 
-/// From now on SIGINT and SIGTERM ask the run to stop (a second one ends it at once), and a file that grows past the
-/// system's limit is an error of the writer instead of a signal.
-void install_signal_handlers();
+/// Writes `text` to stderr. Where that is a full disk or a closed pipe the text is lost, and nothing else.
+void print_to_stderr(const std::string& text);
 
-/// Draws `stage [=====>    ] frame 12/96  step 40 dt 2.8e-04 s  ETA 1:23` on stderr where that is a terminal.
+/// Draws `stage [=====>    ] frame 12/96  step 40 dt 2.8e-04 s  ETA 1:23` on stderr where that is a terminal. While it
+/// lives SIGINT and SIGTERM ask the run to stop, which should_stop() tells (a second one ends it at once); else they
+/// end the program as they do by default, as nobody would ask.
 class TerminalProgress final : public Progress {
  public:
   TerminalProgress();
   ~TerminalProgress() override;
+  TerminalProgress(const TerminalProgress&) = delete;
+  TerminalProgress& operator=(const TerminalProgress&) = delete;
 
   void update(const ProgressState& state) override;
   void message(const std::string& text) override;

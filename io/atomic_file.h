@@ -8,9 +8,11 @@
 
 namespace smelt {
 
-/// Writes `bytes` to `path` through `path`.tmp: every write is checked, the file flushed to the disk and then renamed,
-/// so that a reader, a crash or a full disk never meets half a file. On failure the temporary is removed, an older file
-/// under `path` is left as it was, and an Error names the path, the reason and what to do.
+/// Writes `bytes` to `path` through a temporary file beside it, which no other writer has, on this machine or on
+/// another one that shares the folder; those that killed writers of `path` left are taken away. Every write is checked,
+/// the file flushed to the disk and then renamed, so that a reader, a crash or a full disk never meets half a file. On
+/// failure the temporary is removed, an older file under `path` is left as it was, and an Error names the path, the
+/// reason and what to do.
 void write_file_atomically(const std::filesystem::path& path, std::string_view bytes);
 
 /// The same for libraries that want a file name: `write` fills the temporary file whose path it is given and throws

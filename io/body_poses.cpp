@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "io/vector_json.h"
 
 #include <nlohmann/json.hpp>
 
@@ -10,10 +11,6 @@ namespace smelt {
 namespace {
 
 using nlohmann::ordered_json;
-
-ordered_json to_json(const Vec3& v) {
-  return {v[0], v[1], v[2]};
-}
 
 Vec3 to_vector(const ordered_json& json) {
   if (!json.is_array() || json.size() != 3)
@@ -27,13 +24,13 @@ void write_body_poses(const std::filesystem::path& path, int frame, double time,
   ordered_json list = ordered_json::array();
   for (const BodyPose& body : bodies) {
     ordered_json rows = ordered_json::array();
-    for (int row = 0; row < 3; ++row) rows.push_back(to_json(body.pose.rotation.row(row)));
+    for (int row = 0; row < 3; ++row) rows.push_back(vector_json(body.pose.rotation.row(row)));
     list.push_back({{"collider", body.collider},
                     {"rotation", rows},
-                    {"translation_m", to_json(body.pose.translation)},
-                    {"centre_m", to_json(body.centre)},
-                    {"velocity_m_s", to_json(body.velocity)},
-                    {"angular_velocity_rad_s", to_json(body.angular_velocity)}});
+                    {"translation_m", vector_json(body.pose.translation)},
+                    {"centre_m", vector_json(body.centre)},
+                    {"velocity_m_s", vector_json(body.velocity)},
+                    {"angular_velocity_rad_s", vector_json(body.angular_velocity)}});
   }
   const ordered_json root = {{"frame", frame}, {"time_s", time}, {"bodies", list}};
   write_file_atomically(path, root.dump(1) + "\n");

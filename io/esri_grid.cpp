@@ -1,8 +1,8 @@
 #include "io/atomic_file.h"
+#include "io/extension.h"
 #include "io/height_field.h"
 #include "io/number_rows.h"
 
-#include <algorithm>
 #include <cctype>
 #include <optional>
 
@@ -16,11 +16,14 @@ struct Header {
   std::optional<double> n_columns, n_rows, cell, no_data;
 };
 
+double to_cell(double value, const std::string& where) {
+  if (!std::isfinite(value)) fail("{}: cellsize must be a finite number of metres, is {}", where, value);
+  return value;
+}
+
 /// Whether the line was one of the header's.
 bool read_header_line(std::string_view line, const std::string& where, Header& header) {
-  std::string key(take_word(line, blanks));
-  std::transform(key.begin(), key.end(), key.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string key = lower_case(take_word(line, blanks));
   if (key.empty() || !std::isalpha(static_cast<unsigned char>(key[0])) || key == "nan" || key == "inf") return false;
   const auto number = [&] { return to_number(take_word(line, blanks), where + ": " + key); };
   if (key == "ncols")
@@ -28,7 +31,7 @@ bool read_header_line(std::string_view line, const std::string& where, Header& h
   else if (key == "nrows")
     header.n_rows = number();
   else if (key == "cellsize")
-    header.cell = number();
+    header.cell = to_cell(number(), where);
   else if (key == "nodata_value")
     header.no_data = number();
   else if (key != "xllcorner" && key != "yllcorner" && key != "xllcenter" && key != "yllcenter")
@@ -37,6 +40,11 @@ bool read_header_line(std::string_view line, const std::string& where, Header& h
         "yllcenter, cellsize, NODATA_value",
         where, key);
   return true;
+}
+
+/// nan is a common mark of missing values.
+bool is_same(double a, double b) {
+  return a == b || (std::isnan(a) && std::isnan(b));
 }
 
 std::size_t to_count(const std::optional<double>& value, const char* key, const std::string& path) {
@@ -50,7 +58,7 @@ std::size_t to_count(const std::optional<double>& value, const char* key, const 
 
 HeightField read_esri_grid(const std::filesystem::path& path, const HeightScale& scale) {
   const std::string text = read_file(path);
-  std::string_view rest = text;
+  std::string_view rest = without_byte_order_mark(text);
   std::size_t line_number = 0;
   const auto where = [&] { return fmt::format("{}:{}", path.string(), line_number); };
 
@@ -74,11 +82,10 @@ HeightField read_esri_grid(const std::filesystem::path& path, const HeightScale&
       if (word.empty() || column == field.n_columns)
         fail("{}: row {} has {} {} heights; ncols says {}", where(), row + 1, word.empty() ? "only" : "more than",
              column, field.n_columns);
-      const double value = to_number(word, fmt::format("{}: row {}, column {}", where(), row + 1, column + 1));
-      if (header.no_data && value == *header.no_data)
-        fail("{}: row {}, column {}: NODATA ({}); a terrain has no holes, fill the gap in the data", where(), row + 1,
-             column + 1, word);
-      field.height.push_back(scale.factor * value);
+      const std::string place = fmt::format("{}: row {}, column {}", where(), row + 1, column + 1);
+      if (header.no_data && is_same(to_number(word, place), *header.no_data))
+        fail("{}: NODATA ({}); a terrain has no holes, fill the gap in the data", place, word);
+      field.height.push_back(scale.factor * to_height(word, place));
     }
     if (row + 1 == field.n_rows) break;
     do {

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "io/extension.h"
 #include "io/radiance_hdr.h"
 
 #include <Imath/half.h>
@@ -48,9 +49,7 @@ half to_half(float value) {
 }
 
 bool is_hdr(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return std::tolower(c); });
+  const std::string extension = lower_case_extension(path);
   return extension == ".hdr" || extension == ".pic";
 }
 

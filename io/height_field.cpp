@@ -1,18 +1,21 @@
 #include "io/height_field.h"
 
 #include "core/error.h"
+#include "io/extension.h"
 
 namespace smelt {
 
 bool is_height_field(const std::filesystem::path& path) {
-  return path.extension() == ".asc" || path.extension() == ".csv" || path.extension() == ".png";
+  const std::string extension = lower_case_extension(path);
+  return extension == ".asc" || extension == ".csv" || extension == ".png";
 }
 
 HeightField read_height_field(const std::filesystem::path& path, const HeightScale& scale) {
+  const std::string extension = lower_case_extension(path);
   HeightField field;
-  if (path.extension() == ".asc")
+  if (extension == ".asc")
     field = read_esri_grid(path, scale);
-  else if (path.extension() == ".csv")
+  else if (extension == ".csv")
     field = read_csv_grid(path, scale);
   else
     field = read_height_png(path, scale);

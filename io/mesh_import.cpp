@@ -1,6 +1,7 @@
 #include "io/mesh_import.h"
 
 #include "core/error.h"
+#include "io/extension.h"
 #include "io/ply_check.h"
 
 #include <assimp/Importer.hpp>
@@ -12,7 +13,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <span>
 
@@ -20,13 +20,6 @@ namespace smelt {
 namespace {
 
 const std::array<std::string_view, 6> extensions = {".obj", ".ply", ".stl", ".off", ".gltf", ".glb"};
-
-std::string lower_case_extension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 void check_file(const std::filesystem::path& path) {
   std::error_code error;
@@ -100,6 +93,22 @@ TriangleMesh load(const std::filesystem::path& path) {
   return mesh;
 }
 
+/// The mesh without the vertices that no face uses, which may be anywhere, even nowhere (nan).
+TriangleMesh without_loose_vertices(const TriangleMesh& mesh) {
+  constexpr std::uint32_t unused = 0xffffffff;
+  std::vector<std::uint32_t> new_index(mesh.vertices.size(), unused);
+  for (const auto& t : mesh.triangles)
+    for (const std::uint32_t v : t) new_index[v] = 0;
+  TriangleMesh out;
+  for (std::size_t v = 0; v < new_index.size(); ++v)
+    if (new_index[v] != unused) {
+      new_index[v] = static_cast<std::uint32_t>(out.vertices.size());
+      out.vertices.push_back(mesh.vertices[v]);
+    }
+  for (const auto& t : mesh.triangles) out.triangles.push_back({new_index[t[0]], new_index[t[1]], new_index[t[2]]});
+  return out;
+}
+
 }  // namespace
 
 TriangleMesh import_mesh(const std::filesystem::path& path) {
@@ -107,7 +116,7 @@ TriangleMesh import_mesh(const std::filesystem::path& path) {
   if (lower_case_extension(path) == ".ply") check_ply(path);
   TriangleMesh mesh;
   try {
-    mesh = load(path);
+    mesh = without_loose_vertices(load(path));
   } catch (const Error&) {
     throw;
   } catch (const std::exception& e) {

@@ -208,4 +208,8 @@ SurfaceMesh read_obj(const std::filesystem::path& path) {
   return surface;
 }
 
+bool is_empty_surface(const std::filesystem::path& path) {
+  return read_file(path) == fmt::format("{}0 vertices, 0 triangles\n", promise_start);
+}
+
 }  // namespace smelt

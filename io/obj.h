@@ -21,4 +21,7 @@ void write_obj(const std::filesystem::path& path, const SurfaceMesh& surface, st
 /// in the leading comment are not met (a truncated file).
 SurfaceMesh read_obj(const std::filesystem::path& path);
 
+/// Whether write_obj() wrote this file for a surface without triangles. Throws Error where it cannot be read.
+bool is_empty_surface(const std::filesystem::path& path);
+
 }  // namespace smelt

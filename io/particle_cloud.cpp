@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "io/extension.h"
+#include "io/number_rows.h"
 #include "io/ply_header.h"
 
 #include <fmt/ranges.h>
@@ -9,7 +11,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -25,22 +26,7 @@ struct Table {
   std::size_t n_rows() const { return columns.empty() ? 0 : columns.front().size(); }
 };
 
-std::string lower_case(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
-
 // ---------------------------------------------------------------------------------------------------------------- text
-
-std::string_view take_line(std::string_view& text) {
-  const std::size_t end = std::min(text.find('\n'), text.size());
-  std::string_view line = text.substr(0, end);
-  text.remove_prefix(std::min(end + 1, text.size()));
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  return line;
-}
 
 std::string_view trimmed(std::string_view word) {
   constexpr std::string_view blank = " \t\"";
@@ -60,19 +46,10 @@ std::vector<std::string_view> split(std::string_view line, bool by_blanks) {
   }
 }
 
-double to_number(std::string_view word, const std::filesystem::path& path, std::size_t line, std::size_t particle) {
-  double value = 0.0;
-  if (word.starts_with('+')) word.remove_prefix(1);
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc() || end != word.data() + word.size())
-    fail("{}:{}: expected a number for particle {}, found \"{}\"", path.string(), line, particle, word.substr(0, 40));
-  return value;
-}
-
 /// Rows of numbers; the first row names the columns where `names` is empty.
 Table read_text_table(const std::filesystem::path& path, std::vector<std::string> names, bool by_blanks) {
   const std::string text = read_file(path);
-  std::string_view rest = text;
+  std::string_view rest = without_byte_order_mark(text);
   Table table;
   table.names = std::move(names);
   table.columns.resize(table.names.size());
@@ -89,8 +66,13 @@ Table read_text_table(const std::filesystem::path& path, std::vector<std::string
       fail("{}:{}: particle {} has {} numbers; {} are expected ({})", path.string(), line_number, table.n_rows(),
            words.size(), table.names.size(), fmt::join(table.names, ", "));
     const std::size_t row = table.n_rows();
-    for (std::size_t c = 0; c < words.size(); ++c)
-      table.columns[c].push_back(to_number(words[c], path, line_number, row));
+    for (std::size_t c = 0; c < words.size(); ++c) {
+      const std::optional<double> value = parse_number(words[c]);
+      if (!value)
+        fail("{}:{}: expected a number for particle {}, found \"{}\"", path.string(), line_number, row,
+             words[c].substr(0, 40));
+      table.columns[c].push_back(*value);
+    }
   }
   return table;
 }
@@ -143,11 +125,9 @@ void read_ascii_rows(Table& table, const std::filesystem::path& path, std::strin
       body.remove_prefix(std::min(body.find_first_not_of(blank), body.size()));
       const std::string_view word = body.substr(0, body.find_first_of(blank));
       if (word.empty()) fail_on_end(path, row, element.count);
-      double value = 0.0;
-      const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-      if (error != std::errc() || end != word.data() + word.size())
-        fail("{}: expected a number for particle {}, found \"{}\"", path.string(), row, word.substr(0, 40));
-      table.columns[c].push_back(value);
+      const std::optional<double> value = parse_number(word);
+      if (!value) fail("{}: expected a number for particle {}, found \"{}\"", path.string(), row, word.substr(0, 40));
+      table.columns[c].push_back(*value);
       body.remove_prefix(word.size());
     }
 }
@@ -238,12 +218,12 @@ class Columns {
 }  // namespace
 
 bool is_particle_cloud(const std::filesystem::path& path) {
-  const std::string extension = lower_case(path.extension().string());
+  const std::string extension = lower_case_extension(path);
   return extension == ".ply" || extension == ".xyz" || extension == ".csv";
 }
 
 ParticleCloud read_particle_cloud(const std::filesystem::path& path) {
-  const std::string extension = lower_case(path.extension().string());
+  const std::string extension = lower_case_extension(path);
   Columns columns(path, extension == ".ply"   ? read_ply_table(path)
                         : extension == ".xyz" ? read_text_table(path, {"x", "y", "z"}, true)
                                               : read_text_table(path, {}, false));

@@ -71,10 +71,25 @@ void stamp_uuid(const std::filesystem::path& path, std::string_view bytes) {
   if (!file) fail("its header cannot be rewritten");
 }
 
-/// A file that we stamped must still have the content it was stamped for; others have UUIDs of version 4.
-void check_uuid(std::string_view bytes) {
+/// The mark of our files: their UUIDs alone do not tell, as other programs put any digits into theirs.
+constexpr const char* creator = "smelt";
+
+openvdb::GridCPtrVec with_creator(const openvdb::GridCPtrVec& grids) {
+  openvdb::GridCPtrVec marked;
+  for (const auto& grid : grids) {
+    openvdb::MetaMap metadata(*grid);
+    metadata.insertMeta(openvdb::GridBase::META_GRID_CREATOR, openvdb::StringMetadata(creator));
+    marked.push_back(grid->copyGridReplacingMetadata(metadata));
+  }
+  return marked;
+}
+
+/// A file that we stamped must still have the content it was stamped for.
+void check_uuid(const openvdb::GridPtrVec& grids, std::string_view bytes) {
+  const bool is_ours =
+      std::any_of(grids.begin(), grids.end(), [](const auto& grid) { return grid->getCreator() == creator; });
   const std::string_view uuid = bytes.substr(uuid_at, uuid_size);
-  if (uuid[14] == '8' && uuid != content_uuid(bytes)) fail("its content does not fit its UUID");
+  if (is_ours && uuid[14] == '8' && uuid != content_uuid(bytes)) fail("its content does not fit its UUID");
 }
 
 }  // namespace
@@ -89,7 +104,7 @@ void write_vdb(const std::filesystem::path& path, const openvdb::GridCPtrVec& gr
   write_file_atomically(path, [&](const std::filesystem::path& temporary) {
     try {
       openvdb::io::File file(temporary.string());
-      file.write(grids);
+      file.write(with_creator(grids));
       file.close();
       const std::string bytes = read_file(temporary);
       CHECK_EQ(parse(bytes).size(), grids.size());
@@ -107,7 +122,7 @@ openvdb::GridPtrVec read_vdb(const std::filesystem::path& path) {
   const std::string bytes = read_file(path);
   try {
     openvdb::GridPtrVec grids = parse(bytes);
-    check_uuid(bytes);
+    check_uuid(grids, bytes);
     return grids;
   } catch (const std::exception& e) {
     // Damaged sizes also show as failed allocations.

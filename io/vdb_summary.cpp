@@ -11,6 +11,7 @@ std::vector<GridSummary> summarise_vdb(const std::filesystem::path& path) {
   for (const auto& grid : read_vdb(path)) {
     GridSummary s;
     s.name = grid->getName();
+    s.is_of_smelt = grid->getCreator() == "smelt";
     s.value_type = grid->valueType();
     s.grid_class = openvdb::GridBase::gridClassToString(grid->getGridClass());
     s.voxel_size = grid->voxelSize()[0];

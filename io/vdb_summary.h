@@ -13,10 +13,11 @@ namespace smelt {
 
 struct GridSummary {
   std::string name;
-  std::string value_type;   ///< "float", "vec3s", "ptdataidx32", ...
-  std::string grid_class;   ///< "level set", "fog volume", "staggered" or "unknown"
-  double voxel_size = 0.0;  ///< [m], along x
-  double background = 0.0;  ///< of float grids
+  bool is_of_smelt = false;  ///< as its creator says
+  std::string value_type;    ///< "float", "vec3s", "ptdataidx32", ...
+  std::string grid_class;    ///< "level set", "fog volume", "staggered" or "unknown"
+  double voxel_size = 0.0;   ///< [m], along x
+  double background = 0.0;   ///< of float grids
   std::uint64_t n_active = 0;
   Box3 bounds;                                                ///< of the active voxels [m]; empty where there are none
   std::vector<std::pair<std::string, std::string>> metadata;  ///< creator, frame and what else the writer said, as text

@@ -4,7 +4,9 @@
 #include "core/geometry/manifold.h"
 #include "io/atomic_file.h"
 #include "io/checkpoint.h"
+#include "io/extension.h"
 #include "io/mesh_import.h"
+#include "io/obj.h"
 #include "io/particle_cloud.h"
 #include "io/particles_vdb.h"
 #include "io/ply_header.h"
@@ -81,13 +83,13 @@ std::string describe_grids(const std::vector<GridSummary>& grids) {
 
 std::string describe_vdb(const std::filesystem::path& path) {
   const std::vector<GridSummary> grids = summarise_vdb(path);
-  const bool has_points =
-      std::any_of(grids.begin(), grids.end(), [](const GridSummary& g) { return g.name == "points"; });
-  return has_points ? describe_particles(path) : describe_grids(grids);
+  // Other programs too call their particles so.
+  const bool is_ours =
+      std::any_of(grids.begin(), grids.end(), [](const GridSummary& g) { return g.name == "points" && g.is_of_smelt; });
+  return is_ours ? describe_particles(path) : describe_grids(grids);
 }
 
-std::string describe_mesh(const std::filesystem::path& path) {
-  const TriangleMesh mesh = import_mesh(path);
+std::string describe_mesh(const TriangleMesh& mesh) {
   const MeshTopology t = compute_topology(mesh);
   const std::size_t n_pinched = count_nonmanifold_vertices(mesh);
   const std::string closed = t.n_boundary_edges == 0 ? "yes" : fmt::format("no: {} boundary edges", t.n_boundary_edges);
@@ -115,8 +117,7 @@ std::string describe_checkpoint(const std::filesystem::path& path) {
 
 /// Whether a PLY file is a mesh; other particle clouds never are.
 bool has_faces(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
-  if (extension != ".ply" && extension != ".PLY") return false;
+  if (lower_case_extension(path) != ".ply") return false;
   const PlyHeader header = read_ply_header(path, read_file(path));
   return std::any_of(header.elements.begin(), header.elements.end(),
                      [](const PlyElement& e) { return e.name == "face" && e.count > 0; });
@@ -125,10 +126,13 @@ bool has_faces(const std::filesystem::path& path) {
 }  // namespace
 
 std::string describe_file(const std::filesystem::path& path) {
-  if (path.extension() == ".vdb") return describe_vdb(path);
+  const std::string extension = lower_case_extension(path);
+  if (extension == ".vdb") return describe_vdb(path);
   if (is_particle_cloud(path) && !has_faces(path)) return describe_cloud(path);
-  if (path.extension() == ".bin") return describe_checkpoint(path);
-  return describe_mesh(path);
+  if (extension == ".bin") return describe_checkpoint(path);
+  if (extension == ".obj" && is_empty_surface(path))
+    return "vertices   0\ntriangles  0\nsurface    of a frame without particles, as smelt writes it\n";
+  return describe_mesh(import_mesh(path));
 }
 
 }  // namespace smelt

@@ -3,6 +3,8 @@
 #include "core/error.h"
 #include "core/sph/solver.h"
 #include "io/atomic_file.h"
+#include "scenes/machine.h"
+#include "scenes/version.h"
 
 #include <nlohmann/json.hpp>
 
@@ -10,6 +12,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <fstream>
+#include <thread>
 
 namespace smelt {
 
@@ -38,6 +41,11 @@ Solver<3, float> make_fixed_work() {
   return {parameters, {fluid}, Colliders<3>(), std::move(cube)};
 }
 
+/// What the pace depends on beside other work: a home folder may be shared by many machines.
+nlohmann::json describe_here() {
+  return {{"cpu", cpu_name()}, {"threads", std::thread::hardware_concurrency()}, {"smelt", version}};
+}
+
 }  // namespace
 
 std::filesystem::path pace_file() {
@@ -64,7 +72,9 @@ double calibrate_pace() {
   const double seconds = time_fixed_work();
   std::error_code ignored;
   std::filesystem::create_directories(pace_file().parent_path(), ignored);  // writing says what is wrong
-  write_file_atomically(pace_file(), nlohmann::json({{"fixed_work_seconds", seconds}}).dump(2) + "\n");
+  nlohmann::json pace = describe_here();
+  pace["fixed_work_seconds"] = seconds;
+  write_file_atomically(pace_file(), pace.dump(2) + "\n");
   return seconds;
 }
 
@@ -78,6 +88,9 @@ std::optional<double> measure_load() {
   if (!(calibrated > 0.0))
     fail("{}: fixed_work_seconds must be > 0, is {}; `./smelt bench --calibrate` writes it anew", pace_file().string(),
          calibrated);
+  const nlohmann::json here = describe_here();
+  for (const auto& [key, value] : here.items())
+    if (!pace.contains(key) || pace[key] != value) return std::nullopt;
   return std::max(1.0, time_fixed_work() / calibrated);
 }
 

@@ -17,7 +17,7 @@ double time_fixed_work();
 double calibrate_pace();
 
 /// How many times as long work takes now as it took when the machine was calibrated, at least 1; nothing where it never
-/// was.
+/// was, nor another one with the same home folder that is like it in processor, threads and smelt's version.
 std::optional<double> measure_load();
 
 }  // namespace smelt

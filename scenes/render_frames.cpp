@@ -29,8 +29,9 @@ std::string describe_look(const Scene& scene) {
   return text;
 }
 
-/// The PNG last: where it is, the frame is whole.
-void write_pictures(const Scene& scene, const OutputFolder& folder, int frame, const Film& film, const Vec3& eye) {
+/// Writes the files of a picture and returns them. The PNG last: where it is, the frame is whole.
+std::vector<std::filesystem::path> write_pictures(const Scene& scene, const OutputFolder& folder, int frame,
+                                                  const Film& film, const Vec3& eye) {
   const ToneCurve curve = scene.look.tone_curve.value_or(scene.look.material == "lava" ? "film" : "neutral") == "film"
                               ? ToneCurve::film
                               : ToneCurve::neutral;
@@ -39,6 +40,8 @@ void write_pictures(const Scene& scene, const OutputFolder& folder, int frame, c
     write_png(folder.picture(frame), develop16(film, scene.look.exposure, curve));
   else
     write_png(folder.picture(frame), develop8(film, scene.look.exposure, curve));
+  if (scene.render.exr) return {folder.picture(frame), folder.exr(frame)};
+  return {folder.picture(frame)};
 }
 
 }  // namespace
@@ -68,8 +71,8 @@ void render_frames(const Scene& scene, const OutputFolder& folder, const StageOp
       view.camera = camera_at(scene, camera, time);
       const SurfaceMesh surface = read_surface(folder.surface_obj(frame), folder.surface_vdb(frame));
       const Film film = render_film(surface, view, quality, frame);
-      write_pictures(scene, folder, frame, film, view.camera.eye);
-      report.set_rendered(frame, clamped_share(film), meter.finish({folder.picture(frame)}), settings);
+      const auto files = write_pictures(scene, folder, frame, film, view.camera.eye);
+      report.set_rendered(frame, clamped_share(film), meter.finish(files), settings);
     });
   }
   failed.throw_if_any();

@@ -2,13 +2,14 @@
 
 #include "core/hash.h"
 #include "io/atomic_file.h"
+#include "io/vector_json.h"
+#include "scenes/machine.h"
 #include "scenes/version.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <fstream>
 #include <thread>
 
 namespace smelt {
@@ -27,17 +28,6 @@ struct RunReport::Document {
 };
 
 namespace {
-
-std::string cpu_name() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);)
-    if (line.starts_with("model name") && line.find(": ") != std::string::npos) return line.substr(line.find(": ") + 2);
-  return "unknown";
-}
-
-ordered_json vector_json(const Vec3& v) {
-  return {v[0], v[1], v[2]};
-}
 
 ordered_json cost_json(const StageCost& cost) {
   return {{"seconds", cost.seconds}, {"bytes", cost.bytes}};
@@ -80,6 +70,7 @@ void RunReport::set_run(const std::string& scene_text, std::uint64_t scene_hash,
   root["particle_spacing_m"] = spacing;
   root["body_volume_m3"] = body_volume;
   if (!root.contains("frames")) root["frames"] = ordered_json::array();
+  save();
 }
 
 void RunReport::set_simulated(int frame, double time, const StepStatistics& steps, const Diagnostics<3>& d,
@@ -96,7 +87,7 @@ void RunReport::set_simulated(int frame, double time, const StepStatistics& step
                           {"max", steps.max_dt},
                           {"set_by", terms}}},
                         {"mass_kg", d.mass},
-                        {"momentum_kg_m_s", {d.momentum[0], d.momentum[1], d.momentum[2]}},
+                        {"momentum_kg_m_s", vector_json(d.momentum)},
                         {"kinetic_energy_J", d.kinetic_energy},
                         {"potential_energy_J", d.potential_energy},
                         {"energy_J", d.kinetic_energy + d.potential_energy},
@@ -145,6 +136,17 @@ std::optional<std::uint64_t> RunReport::settings_of(int frame, const std::string
   const ordered_json& entry = root["frames"][k];
   if (!entry.contains(stage) || !entry[stage].contains("settings")) return std::nullopt;
   return std::stoull(entry[stage]["settings"].get<std::string>(), nullptr, 16);
+}
+
+bool RunReport::is_of_smelt() const {
+  const ordered_json& root = document_->root;
+  return root.is_object() && (root.contains("smelt") || root.contains("frames"));
+}
+
+std::optional<std::uint64_t> RunReport::simulation_hash() const {
+  const ordered_json& root = document_->root;
+  if (!root.is_object() || !root.contains("simulation_hash")) return std::nullopt;
+  return std::stoull(root["simulation_hash"].get<std::string>(), nullptr, 16);
 }
 
 void RunReport::begin(int frame, const std::string& stage) {

@@ -66,6 +66,7 @@ class RunReport {
   RunReport(std::filesystem::path path, bool keep);
   ~RunReport();
 
+  /// The head of the report; saves, so that the folder is known for a result before its first frame.
   void set_run(const std::string& scene_text, std::uint64_t scene_hash, double spacing, double body_volume);
   /// `mass` is absent in a scene without emitters and outflow, `bodies` empty in one without rigid bodies. `heat`: what
   /// passed since the frame before; absent where no specific heat is known.
@@ -81,6 +82,12 @@ class RunReport {
   /// The hash of what a stage ("surface", "render") made the files of a frame from; nothing where it has not, or
   /// was cut off.
   std::optional<std::uint64_t> settings_of(int frame, const std::string& stage) const;
+
+  /// Whether the report read was one: its frames or its head are there.
+  bool is_of_smelt() const;
+
+  /// Of the scene and meshes that the particles were made from, by set_run(); nothing where it never was called.
+  std::optional<std::uint64_t> simulation_hash() const;
 
   /// Takes a stage's entry back before its files are made anew: if that is cut off, they are neither old nor new.
   void begin(int frame, const std::string& stage);

@@ -25,23 +25,6 @@ double timed(const std::function<void()>& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Nothing computed is ever lost: an earlier result gives way to a new one by taking another name.
-void move_aside(const OutputFolder& folder, Progress& progress) {
-  if (!std::filesystem::exists(folder.scene()) && !std::filesystem::exists(folder.particles())) return;
-  for (int k = 1;; ++k) {
-    std::filesystem::path aside = folder.root;
-    aside += fmt::format(".{}", k);
-    if (std::filesystem::exists(aside)) continue;
-    std::error_code error;
-    std::filesystem::rename(folder.root, aside, error);
-    if (error)
-      fail("{}: cannot move the earlier result aside: {}; use another folder (-o) or --resume", folder.root.string(),
-           error.message());
-    progress.message(fmt::format("moved the earlier result to {} (--resume goes on from it instead)", aside.string()));
-    return;
-  }
-}
-
 /// The pictures asked for: the scene's own or diagnostic ones; for a sheet only those on it.
 void draw_pictures(const Scene& scene, const OutputFolder& folder, const StageOptions& options,
                    const PictureRequest& request, RunReport& report, Progress& progress) {
@@ -75,8 +58,6 @@ FrameRange parse_frame_range(const std::string& text, int last) {
 RunSummary run_scene(const Scene& scene, const RunOptions& options, Progress& progress) {
   RunSummary summary{output_folder(scene, options), options.frames.value_or(FrameRange{1, scene.shot.frames})};
   const OutputFolder& folder = summary.folder;
-  if (!options.resume) move_aside(folder, progress);
-  create_directories_or_fail(folder.root);
   RunReport report(folder.report(), options.resume);
   const StageOptions stage{summary.frames, options.resume};
   summary.simulate_seconds = timed([&] { simulate_frames(scene, folder, stage, report, progress); });
@@ -93,8 +74,7 @@ RunSummary run_scene(const Scene& scene, const RunOptions& options, Progress& pr
 RunSummary run_stage(const Scene& scene, Stage stage, const RunOptions& options, Progress& progress) {
   RunSummary summary{output_folder(scene, options), options.frames.value_or(FrameRange{1, scene.shot.frames})};
   const OutputFolder& folder = summary.folder;
-  if (stage == Stage::simulate && !options.resume) move_aside(folder, progress);
-  create_directories_or_fail(folder.root);
+  if (stage != Stage::simulate) create_directories_or_fail(folder.root);
   RunReport report(folder.report(), stage != Stage::simulate || options.resume);
   const StageOptions how{summary.frames, options.resume};
   switch (stage) {

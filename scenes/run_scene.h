@@ -27,8 +27,8 @@ struct RunSummary {
   std::optional<std::filesystem::path> film = std::nullopt;  ///< where ffmpeg is installed and all frames are there
 };
 
-/// Simulates, surfaces and renders. Without `resume`, an earlier result in the folder is first moved aside to
-/// <folder>.1, .2, ...
+/// Simulates, surfaces and renders. Without `resume`, an earlier result in the folder is first moved aside, once
+/// nothing can be refused any more, to <folder>.1, .2, ...
 RunSummary run_scene(const Scene& scene, const RunOptions& options, Progress& progress);
 
 /// One stage, from what the earlier ones left in the folder.

@@ -21,6 +21,8 @@ namespace smelt {
 
 namespace {
 
+namespace fs = std::filesystem;
+
 /// Newest first.
 std::vector<std::filesystem::path> list_checkpoints(const OutputFolder& folder) {
   std::vector<std::filesystem::path> files;
@@ -40,9 +42,29 @@ std::optional<Checkpoint> read_if_sound(const std::filesystem::path& file, Progr
   }
 }
 
-/// The newest sound checkpoint; nothing where the folder has none. Throws Error where those it has are of no use:
-/// starting over would write over frames that somebody wanted to keep.
-std::optional<Checkpoint> find_checkpoint(const OutputFolder& folder, std::uint64_t scene_hash, Progress& progress) {
+bool has_files(const fs::path& folder) {
+  return fs::is_directory(folder) && !fs::is_empty(folder);
+}
+
+/// Whether a run wrote this folder: by its report or a checkpoint. A scene.toml may be anybody's.
+bool holds_result(const OutputFolder& folder, const RunReport& report) {
+  return report.is_of_smelt() || !list_checkpoints(folder).empty();
+}
+
+/// What a run without checkpoints left, if that is more than the first frame, from which a run starts over anyway.
+std::optional<fs::path> find_later_files(const OutputFolder& folder) {
+  for (const fs::path& stage : {folder.surfaces(), folder.frames()})
+    if (has_files(stage)) return stage;
+  if (fs::is_directory(folder.particles()))
+    for (const auto& entry : fs::directory_iterator(folder.particles()))
+      if (entry.path().extension() == ".vdb" && entry.path() != folder.particles(1)) return entry.path();
+  return std::nullopt;
+}
+
+/// The newest sound checkpoint; nothing where the folder has none and holds no frames but the first. Throws Error where
+/// those it has are of no use, or missing: starting over would write over frames that somebody wanted to keep.
+std::optional<Checkpoint> find_checkpoint(const OutputFolder& folder, const RunReport& report, std::uint64_t scene_hash,
+                                          Progress& progress) {
   const auto files = list_checkpoints(folder);
   for (const auto& file : files) {
     std::optional<Checkpoint> checkpoint = read_if_sound(file, progress);
@@ -59,8 +81,78 @@ std::optional<Checkpoint> find_checkpoint(const OutputFolder& folder, std::uint6
         "{}: none of the checkpoints can be read, so there is nothing to resume from; without --resume the result is "
         "moved aside and the shot starts over",
         folder.checkpoints().string());
+  if (const auto later = find_later_files(folder))
+    fail(
+        "{}: there are no checkpoints, so there is nothing to resume the simulation from, but {} is there; `smelt surface` and "
+        "`smelt render` need none; without --resume the result is moved aside and the shot starts over",
+        folder.checkpoints().string(), later->string());
+  if (const auto hash = report.simulation_hash(); hash && *hash != scene_hash)
+    fail(
+        "{}: this folder was simulated from another scene or other meshes, or by another version of smelt, and has no "
+        "checkpoints; use another folder (-o), or start over without --resume",
+        folder.report().string());
   return std::nullopt;
 }
+
+// ------------------------------------------------------------------------------------------------------ earlier result
+
+bool is_below(const fs::path& path, const fs::path& folder) {
+  const fs::path inner = fs::weakly_canonical(fs::absolute(path)), outer = fs::weakly_canonical(folder);
+  return std::mismatch(outer.begin(), outer.end(), inner.begin(), inner.end()).first == outer.end();
+}
+
+/// Throws Error where a run would write over what no run wrote or, from the start, would move away what the user works
+/// in or the scene is made of.
+void check_folder(const Scene& scene, const OutputFolder& folder, bool resume) {
+  const RunReport report(folder.report(), true);
+  if (!holds_result(folder, report)) {
+    for (const fs::path& theirs : {folder.scene(), folder.particles()})
+      if (fs::is_directory(theirs) ? has_files(theirs) : fs::exists(theirs))
+        fail("{}: is in the way and no run of smelt wrote it, as there is no {}; use another folder (-o)",
+             theirs.string(), folder.report().string());
+    return;
+  }
+  if (resume) return;
+  const auto refuse = [&](const fs::path& path, const char* what) {
+    if (is_below(path, folder.root))
+      fail("{}: holds an earlier result and would be moved aside, but {} in it ({}); use another folder (-o)",
+           folder.root.string(), what, path.string());
+  };
+  refuse(fs::current_path(), "you are");
+  if (!scene.file.empty()) refuse(scene.file, "the scene is");
+  for (const BodySettings& b : scene.bodies) refuse(find_mesh(scene, b.mesh), "a body's mesh is");
+  for (const ColliderSettings& c : scene.colliders)
+    if (c.mesh != "ground") refuse(find_mesh(scene, c.mesh), "a collider's mesh is");
+}
+
+/// Nothing computed is ever lost: an earlier result gives way to a new one by taking another name.
+void move_aside(const OutputFolder& folder, Progress& progress) {
+  if (!holds_result(folder, RunReport(folder.report(), true))) return;
+  for (int k = 1;; ++k) {
+    fs::path aside = folder.root;
+    aside += fmt::format(".{}", k);
+    if (fs::exists(aside)) continue;
+    std::error_code error;
+    fs::rename(folder.root, aside, error);
+    if (error)
+      fail("{}: cannot move the earlier result aside: {}; use another folder (-o) or --resume", folder.root.string(),
+           error.message());
+    progress.message(fmt::format("moved the earlier result to {} (--resume goes on from it instead)", aside.string()));
+    return;
+  }
+}
+
+/// The folders, the scene as run, and the head of the report: it goes first, as it tells a result from other files.
+void open_folder(const Scene& scene, const OutputFolder& folder, const SimulationSetup& setup, std::uint64_t scene_hash,
+                 RunReport& report) {
+  create_directories_or_fail(folder.particles());
+  create_directories_or_fail(folder.checkpoints());
+  const std::string text = write_scene(scene);
+  report.set_run(text, scene_hash, setup.spacing, setup.body_volume);
+  write_file_atomically(folder.scene(), text);
+}
+
+// ---------------------------------------------------------------------------------------------------------- simulation
 
 /// Advances from one frame to the next.
 template <typename Real>
@@ -90,14 +182,18 @@ std::vector<BodyPose> to_body_poses(const Colliders<3>& colliders) {
   return poses;
 }
 
+/// Writes the frame and returns its files.
 template <typename Real>
-void store_frame(const Solver<3, Real>& solver, const SimulationSetup& setup, const OutputFolder& folder, int frame,
-                 double time, std::optional<RestPositions>& rest) {
+std::vector<fs::path> store_frame(const Solver<3, Real>& solver, const SimulationSetup& setup,
+                                  const OutputFolder& folder, int frame, double time,
+                                  std::optional<RestPositions>& rest) {
   ParticleFrame cache = to_frame(solver, setup.spacing, frame, time);
   if (rest) rest->set_rest(cache);
   write_particles(folder.particles(frame), cache);
   const std::vector<BodyPose> bodies = to_body_poses(solver.colliders());
-  if (!bodies.empty()) write_body_poses(folder.bodies(frame), frame, time, bodies);
+  if (bodies.empty()) return {folder.particles(frame)};
+  write_body_poses(folder.bodies(frame), frame, time, bodies);
+  return {folder.particles(frame), folder.bodies(frame)};
 }
 
 /// After the cache and the report: a checkpoint says that all of its frame is safe.
@@ -121,10 +217,13 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
                     Progress& progress) {
   Colliders<3> colliders = build_colliders(setup);
   if (checkpoint) colliders.set_body_states(checkpoint->bodies);
-  if (colliders.has_bodies()) create_directories_or_fail(folder.bodies());
   Solver<3, Real> solver(setup.parameters, setup.materials, std::move(colliders),
                          checkpoint ? checkpoint->particles : std::move(setup.particles),
                          checkpoint ? checkpoint->account : ParticleAccount{});
+  // From here on nothing is refused any more.
+  if (!options.resume) move_aside(folder, progress);
+  open_folder(scene, folder, setup, scene_hash, report);
+  if (solver.colliders().has_bodies()) create_directories_or_fail(folder.bodies());
   std::optional<RestPositions> rest;
   if (scene.particles.rest_position) rest.emplace(setup.parameters);
   int frame = 1;
@@ -134,10 +233,10 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
     progress.message(fmt::format("resuming after frame {}", frame));
   } else {
     const CostMeter meter;
-    store_frame(solver, setup, folder, 1, 0.0, rest);
+    const auto files = store_frame(solver, setup, folder, 1, 0.0, rest);
     const Diagnostics<3> diagnostics = compute_diagnostics(solver);
     report.set_simulated(1, 0.0, {}, diagnostics, compute_mass_account(solver, diagnostics.mass), ledger_of(solver),
-                         to_body_poses(solver.colliders()), meter.finish({folder.particles(1)}));
+                         to_body_poses(solver.colliders()), meter.finish(files));
     store_checkpoint(solver, folder, scene_hash, 1, 0.0);
   }
 
@@ -154,16 +253,23 @@ void run_simulation(const Scene& scene, const OutputFolder& folder, const StageO
           fmt::format("{}; frames 1 to {} are kept in {}", error.what(), frame - 1, folder.particles().string()));
     }
     const double time = (frame - 1) / scene.shot.fps;
-    store_frame(solver, setup, folder, frame, time, rest);
+    const auto files = store_frame(solver, setup, folder, frame, time, rest);
     const Diagnostics<3> diagnostics = compute_diagnostics(solver);
     report.set_simulated(frame, time, statistics, diagnostics, compute_mass_account(solver, diagnostics.mass),
-                         ledger_of(solver), to_body_poses(solver.colliders()), meter.finish({folder.particles(frame)}));
+                         ledger_of(solver), to_body_poses(solver.colliders()), meter.finish(files));
     store_checkpoint(solver, folder, scene_hash, frame, time);
   }
 }
 
-/// Of all that the particles depend on: the settings, the files that they name, and what follows from the length of the
-/// shot. How colliders look is left out.
+std::uint64_t hash_mesh(const TriangleMesh& mesh, std::uint64_t seed) {
+  const auto bytes = [](const auto& values) {
+    return std::string_view(reinterpret_cast<const char*>(values.data()), values.size() * sizeof values[0]);
+  };
+  return hash_bytes(bytes(mesh.triangles), hash_bytes(bytes(mesh.vertices), seed));
+}
+
+/// Of all that the particles depend on: the settings, the meshes that they name, wherever their bytes come from, and
+/// what follows from the length of the shot. How colliders look is left out.
 std::uint64_t hash_simulation(const Scene& scene, const SimulationSetup& setup) {
   Scene bare = scene;
   for (ColliderSettings& c : bare.colliders) {
@@ -173,9 +279,8 @@ std::uint64_t hash_simulation(const Scene& scene, const SimulationSetup& setup) 
     c.roughness = plain.roughness;
   }
   std::uint64_t hash = hash_bytes(version, hash_bytes(write_section(bare, SceneSection::simulation)));
-  for (const BodySettings& b : scene.bodies) hash = hash_bytes(read_file(find_mesh(scene, b.mesh)), hash);
-  for (const ColliderSettings& c : scene.colliders)
-    if (c.mesh != "ground") hash = hash_bytes(read_file(find_mesh(scene, c.mesh)), hash);
+  for (const TriangleMesh& mesh : import_placed_bodies(scene)) hash = hash_mesh(mesh, hash);
+  for (const TriangleMesh& mesh : setup.colliders) hash = hash_mesh(mesh, hash);
   return hash_bytes(fmt::format("{} {}", setup.parameters.sound_speed, setup.parameters.shear_wave_speed), hash);
 }
 
@@ -183,16 +288,11 @@ std::uint64_t hash_simulation(const Scene& scene, const SimulationSetup& setup) 
 
 void simulate_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report,
                      Progress& progress) {
+  check_folder(scene, folder, options.resume);
   SimulationSetup setup = build_simulation(scene);
   for (const std::string& warning : setup.warnings) progress.message("warning: " + warning);
-  create_directories_or_fail(folder.particles());
-  create_directories_or_fail(folder.checkpoints());
   const std::uint64_t scene_hash = hash_simulation(scene, setup);
-  // Before anything is written: resuming may be refused.
-  const auto checkpoint = options.resume ? find_checkpoint(folder, scene_hash, progress) : std::nullopt;
-  const std::string text = write_scene(scene);
-  write_file_atomically(folder.scene(), text);
-  report.set_run(text, scene_hash, setup.spacing, setup.body_volume);
+  const auto checkpoint = options.resume ? find_checkpoint(folder, report, scene_hash, progress) : std::nullopt;
   if (scene.solver.precision == "double")
     run_simulation<double>(scene, folder, options, setup, checkpoint, scene_hash, report, progress);
   else

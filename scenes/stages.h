@@ -26,8 +26,11 @@ struct StageOptions {
 };
 
 /// Simulates up to options.frames.last and writes particles and a checkpoint for every frame. With `resume` it goes on
-/// from the last sound checkpoint, and ends in the same bytes as a run that was never cut off. Throws Error where that
-/// checkpoint is of another scene, DivergedError (frames finished are kept), Interrupted.
+/// from the last sound checkpoint, and ends in the same bytes as a run that was never cut off; without, an earlier
+/// result in the folder is first moved aside to <folder>.1, .2, ... Before anything is moved or written throws Error
+/// where the simulation cannot be built, the last checkpoint is of another scene, frames are there but no checkpoints,
+/// files that no run wrote are in the way, or the folder to be moved holds the scene, its meshes or the current folder.
+/// Throws DivergedError (frames finished are kept), Interrupted.
 void simulate_frames(const Scene& scene, const OutputFolder& folder, const StageOptions& options, RunReport& report,
                      Progress& progress);
 

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "io/extension.h"
 #include "io/particle_cloud.h"
 #include "io/particles_vdb.h"
 #include "scenes/scene_reader.h"
@@ -167,21 +168,21 @@ double estimate_spacing_of(const fs::path& path) {
 }
 
 /// settings.toml, beside the surfaces: what they depend on beside the particles, and which frames were made from that.
+/// Several machines may make frames in one folder: each keeps what the others wrote.
 class SeriesSettings {
  public:
-  SeriesSettings(fs::path path, std::string text, bool resume) : path_(std::move(path)), text_(std::move(text)) {
-    if (!resume || !fs::exists(path_)) return;
-    const std::string old = read_file(path_);
-    const std::size_t end = old.find('\n');
-    if (!old.starts_with(heading) || old.substr(end + 1) != text_) return;
-    std::istringstream numbers(old.substr(heading.size(), end - heading.size()));
-    for (int frame; numbers >> frame;) made_.insert(frame);
+  SeriesSettings(fs::path path, std::string text, bool resume)
+      : path_(std::move(path)), text_(std::move(text)), shared_(resume) {
+    if (shared_) made_ = read();
   }
 
   bool made(int frame) const { return made_.contains(frame); }
 
   /// Saved: what is cut off after it counts as not made.
   void set_made(int frame, bool made) {
+    const FolderLock lock(path_.parent_path());
+    if (shared_) made_ = read();
+    shared_ = true;
     if (made)
       made_.insert(frame);
     else
@@ -191,8 +192,22 @@ class SeriesSettings {
 
  private:
   static constexpr std::string_view heading = "# frames = ";
+
+  /// The frames that the file says were made from these settings.
+  std::set<int> read() const {
+    std::set<int> frames;
+    if (!fs::exists(path_)) return frames;
+    const std::string old = read_file(path_);
+    const std::size_t end = old.find('\n');
+    if (!old.starts_with(heading) || old.substr(end + 1) != text_) return frames;
+    std::istringstream numbers(old.substr(heading.size(), end - heading.size()));
+    for (int frame; numbers >> frame;) frames.insert(frame);
+    return frames;
+  }
+
   fs::path path_;
   std::string text_;
+  bool shared_;  ///< another machine may have written to the file
   std::set<int> made_;
 };
 
@@ -227,7 +242,7 @@ SeriesSummary surface_series(const std::vector<std::string>& names, const std::s
   const std::vector<ParticleFile> files = find_particle_files(names, frames);
   const Scene settings = read_surface_settings(options.overrides);
   for (const ParticleFile& file : files)
-    if (!is_particle_cloud(file.path) && file.path.extension() != ".vdb")
+    if (!is_particle_cloud(file.path) && lower_case_extension(file.path) != ".vdb")
       fail("{}: particles cannot be read from '{}' files; allowed are .vdb .ply .xyz .csv", file.path.string(),
            file.path.extension().string());
 

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "core/sph/rheology.h"
+#include "io/extension.h"
 #include "io/height_field.h"
 #include "render/film.h"
 #include "scenes/nearest_word.h"
@@ -221,7 +222,7 @@ void validate_outflow(const OutflowSettings& s, const std::string& path, SceneEr
 }
 
 void validate_terrain(const ColliderSettings& s, const std::string& path, SceneErrors& errors) {
-  const std::string extension = std::filesystem::path(s.mesh).extension().string();
+  const std::string extension = lower_case_extension(s.mesh);
   if (!is_height_field(s.mesh)) {
     if (s.terrain)
       errors.add(path + ".terrain",

@@ -46,7 +46,7 @@ struct Case {
   std::string title;
   std::string measures;                        ///< one sentence
   std::string good;                            ///< one sentence: what a good number is
-  double good_error;                           ///< the same as a number
+  std::vector<double> good_errors;             ///< the same as numbers: one a method, or one for all of them
   std::string error_label;                     ///< of the axis, with its unit
   std::string resolution_label;                ///< what is counted: "particles across the channel"
   std::string profile_x = {}, profile_y = {};  ///< axes of the profiles, with units; empty without profiles
@@ -55,6 +55,8 @@ struct Case {
   /// Computes with methods[method] at a resolution, on the calling thread where it is in a tbb::task_arena of one.
   /// Throws where it cannot.
   std::function<Measurement(std::size_t method, double resolution)> run;
+
+  double good_error(std::size_t method) const { return good_errors.at(good_errors.size() == 1 ? 0 : method); }
 };
 
 }  // namespace smelt

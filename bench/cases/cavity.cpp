@@ -85,7 +85,7 @@ Case make_case() {
           "The steady flow in a square box whose lid slides, Re = 1: the largest difference of the velocities on the "
           "two middle lines from finite differences.",
       .good = "Within 2 % of the lid's speed.",
-      .good_error = 0.02,
+      .good_errors = {0.02},
       .error_label = "velocity: largest error / lid speed",
       .resolution_label = "particles along a side",
       .profile_x = "height on the middle line / side",

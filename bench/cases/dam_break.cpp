@@ -89,7 +89,7 @@ Case make_case() {
               "The front of a water column a x 2a that collapses along a dry floor until T = t sqrt(2g/a) = 3.4, its "
               "largest difference from measured fronts, with the origin of time of each experiment fitted.",
           .good = "Within 10 %: the experiments differ from each other by more.",
-          .good_error = 0.1,
+          .good_errors = {0.1},
           .error_label = "front: largest |position / experiment - 1|",
           .resolution_label = "particles across a",
           .profile_x = "T = t sqrt(2g/a)",

@@ -86,7 +86,7 @@ Case make_furnace_case() {
           "What pixels of a white sphere differ from the white room that it stands in, root mean square: wax with a "
           "coat, the same after the filter, and metal.",
       .good = "Within 2 %, which an eye does not see.",
-      .good_error = 0.02,
+      .good_errors = {0.02},
       .error_label = "radiance: L2 error / exact",
       .resolution_label = "samples a pixel",
       .methods = {"wax", "wax, denoised", "metal"},
@@ -102,7 +102,7 @@ Case make_black_body_case() {
               "The light of a sphere at 1300 K on the floor below it, drawn as light sources and met by rays, against "
               "Planck's law and the solid angle: root mean square over pixels.",
           .good = "Within 2 %, which an eye does not see.",
-          .good_error = 0.02,
+          .good_errors = {0.02},
           .error_label = "radiance: L2 error / exact",
           .resolution_label = "samples a pixel",
           .methods = {"red channel"},

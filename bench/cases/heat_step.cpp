@@ -85,7 +85,7 @@ Case make_case() {
           "The temperature 0.2 s after a step of one kelvin on a jittered lattice, diffusivity 0.1 m^2/s, against the "
           "error function: root mean square over four lattices.",
       .good = "Within 0.1 % of the step; where the number of neighbours grows too it converges faster.",
-      .good_error = 0.001,
+      .good_errors = {0.001},
       .error_label = "temperature: L2 error / step",
       .resolution_label = "particles a metre",
       .profile_x = "x [m]",

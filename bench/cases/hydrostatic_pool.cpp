@@ -155,7 +155,7 @@ Case make_case() {
           "The pressure that gauges along the wetted walls of a pool at rest show from 2 to 2.5 s, the worst of them, "
           "against rho g depth: over a flat floor with corners, in a tilted box, and over a slope of 30 degrees.",
       .good = "Within 3 % of the pressure at the bottom.",
-      .good_error = 0.03,
+      .good_errors = {0.03},
       .error_label = "pressure on walls: largest error / rho g depth",
       .resolution_label = "particles deep",
       .profile_x = "height [m]",

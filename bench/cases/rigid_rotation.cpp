@@ -32,7 +32,7 @@ Case make_case() {
               "What a stiff disc and a stiff ball (jump number 1000) lose of their angular velocity in one turn; they "
               "should keep all of it.",
           .good = "Within 1 %.",
-          .good_error = 0.01,
+          .good_errors = {0.01},
           .error_label = "|angular velocity / start - 1|",
           .resolution_label = "particles in the radius",
           .methods = {"disc", "ball"},

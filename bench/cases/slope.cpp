@@ -113,7 +113,7 @@ Case make_case() {
       .good =
           "Within 10 % just above the critical thickness, where a change of 1 % in thickness changes the speed by 40 "
           "%, and 2 % well above.",
-      .good_error = 0.1,
+      .good_errors = {0.1, 0.02},
       .error_label = "|speed of the surface / exact - 1|",
       .resolution_label = "rows of particles",
       .methods = {"1.05 of the critical thickness", "1.5 of the critical thickness"},

@@ -84,7 +84,7 @@ Case make_case() {
           "How far a cylinder of clay as wide as tall has sunk after three seconds, against the formula of Pashias et "
           "al. (1996), for three yield stresses.",
       .good = "Within 10 %, as good as the formula itself.",
-      .good_error = 0.1,
+      .good_errors = {0.1},
       .error_label = "|slump / formula - 1|",
       .resolution_label = "particles high",
       .methods = {"yield stress 0.1 rho g H", "0.2 rho g H", "0.3 rho g H"},

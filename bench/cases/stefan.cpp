@@ -102,7 +102,7 @@ Case make_case() {
               "quarter to two thirds of it is liquid, against Neumann's similarity solution, for three Stefan numbers "
               "(sensible over latent heat).",
           .good = "Within 2 % of the front's height: a row of particles melts at a time.",
-          .good_error = 0.02,
+          .good_errors = {0.02},
           .error_label = "front: largest |height / exact - 1|",
           .resolution_label = "particles in the column",
           .profile_x = "time [s]",

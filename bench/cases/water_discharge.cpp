@@ -93,7 +93,7 @@ Case make_case() {
       .measures =
           "The speed of the jet that runs out of a vessel at its floor, mean from 0.2 to 0.3 s, against Torricelli's.",
       .good = "Within 5 %; with the text's 24 particles across, eight across the opening.",
-      .good_error = 0.05,
+      .good_errors = {0.05},
       .error_label = "|speed of the jet / Torricelli's - 1|",
       .resolution_label = "particles across the vessel",
       .methods = {"continuity density"},

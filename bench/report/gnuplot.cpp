@@ -142,9 +142,10 @@ std::string draw_plot(const Plot& plot, const std::string& name, const std::file
   Script script;
   for (const Series& series : plot.series) script.add(series, plot.logarithmic);
   if (script.plots.empty()) return "<p>Nothing to draw.</p>";
-  if (plot.level) {
-    script.y.add(*plot.level);
-    script.add_plot(fmt::format("{:.6g} with lines lw 1 dt 3 lc rgb '#555555' title 'a good number'", *plot.level));
+  for (std::size_t k = 0; k < plot.levels.size(); ++k) {
+    script.y.add(plot.levels[k]);
+    script.add_plot(fmt::format("{:.6g} with lines lw 1 dt 3 lc rgb '#555555' {}", plot.levels[k],
+                                k == 0 ? "title 'a good number'" : "notitle"));
   }
   std::string settings = head(name, 520, 400) + labels(plot.x_label, plot.y_label) +
                          "set key outside above Left reverse horizontal samplen 2\n";

@@ -23,7 +23,7 @@ struct Plot {
   std::string x_label, y_label;
   bool logarithmic = false;  ///< both axes
   std::vector<Series> series;
-  std::optional<double> level;  ///< a horizontal line: a good number
+  std::vector<double> levels;  ///< horizontal lines: good numbers
 };
 
 /// Throws Error where gnuplot cannot be started.

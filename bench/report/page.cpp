@@ -3,13 +3,14 @@
 #include "bench/cases/norms.h"
 #include "bench/report/gnuplot.h"
 #include "bench/report/html.h"
+#include "scenes/machine.h"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <ctime>
-#include <fstream>
 #include <iterator>
+#include <set>
 #include <thread>
 
 namespace smelt {
@@ -47,9 +48,15 @@ double error_of(const Run& run) {
   return run.measured.error;
 }
 
+/// Each number once, however many methods it is for.
+std::vector<double> distinct_good_errors(const Case& problem) {
+  const std::set<double> distinct(problem.good_errors.begin(), problem.good_errors.end());
+  return {distinct.begin(), distinct.end()};
+}
+
 Plot cost_plot(const CaseResult& result) {
   const Case& problem = result.problem;
-  Plot plot{"CPU seconds", problem.error_label, true, {}, problem.good_error};
+  Plot plot{"CPU seconds", problem.error_label, true, {}, distinct_good_errors(problem)};
   for (std::size_t m = 0; m < problem.methods.size(); ++m)
     plot.series.push_back({problem.methods[m],
                            collect(
@@ -73,7 +80,7 @@ Curve fitted_line(const Curve& curve, double order) {
 
 Plot convergence_plot(const CaseResult& result) {
   const Case& problem = result.problem;
-  Plot plot{problem.resolution_label, problem.error_label, true, {}, problem.good_error};
+  Plot plot{problem.resolution_label, problem.error_label, true, {}, distinct_good_errors(problem)};
   for (std::size_t m = 0; m < problem.methods.size(); ++m) {
     const Curve curve = collect(
         result.runs, m, [](const Run& run) { return run.resolution; }, error_of);
@@ -143,8 +150,8 @@ std::string write_summary(const CaseResult& result) {
     }
     const auto order = fitted_order(result.runs, m);
     out += fmt::format("<td>{:g}</td><td>{:.3g}</td><td>{:g}</td><td>{}</td><td>{}</td><td>{:.2f}</td></tr>\n",
-                       run->resolution, run->measured.error, problem.good_error,
-                       run->measured.error <= problem.good_error ? "yes" : "no",
+                       run->resolution, run->measured.error, problem.good_error(m),
+                       run->measured.error <= problem.good_error(m) ? "yes" : "no",
                        order ? fmt::format("{:.2f}", *order) : "", run->measured.cpu_seconds);
   }
   return out;
@@ -170,14 +177,7 @@ std::string write_table(const CaseResult& result) {
 }  // namespace
 
 std::string describe_machine() {
-  std::ifstream file("/proc/cpuinfo");
-  std::string model = "unknown processor";
-  for (std::string line; std::getline(file, line);)
-    if (line.starts_with("model name") && line.find(": ") != std::string::npos) {
-      model = line.substr(line.find(": ") + 2);
-      break;
-    }
-  return fmt::format("{}, {} cores", model, std::thread::hardware_concurrency());
+  return fmt::format("{}, {} cores", cpu_name(), std::thread::hardware_concurrency());
 }
 
 std::string describe_now() {
@@ -218,7 +218,7 @@ std::string write_page(const PageHead& head, const std::vector<Section>& section
       style, escape_html(head.machine), escape_html(head.version), head.date, escape_html(head.command));
   out +=
       "<p>Every case has a known answer: an exact or converged solution, or an experiment. CPU seconds are those of "
-      "one thread. The dotted line in a plot is a good number as the case's text has it; below and to the left is "
+      "one thread. Dotted lines in a plot are good numbers as the case's text has them; below and to the left is "
       "better.</p>\n";
   if (head.quick)
     out += "<p>These are the coarse resolutions of the quick suite; without <code>--quick</code> finer ones run.</p>\n";

@@ -115,7 +115,12 @@ void make_report(const Selection& selection, const ReportOptions& options, Progr
   ReportFolder folder(selection, options);
   run_suite(selection.cases, options.quick, options.threads, progress,
             [&](const CaseResult& result) { folder.add(result); });
-  if (selection.stability) folder.add(probe_stability(options.quick, options.threads, progress));
+  std::vector<std::string> complaints;
+  if (selection.stability) {
+    const Stability stability = probe_stability(options.quick, options.threads, progress);
+    folder.add(stability);
+    if (options.check) complaints = failures(stability);
+  }
 
   const std::vector<RunRow> rows = folder.rows();
   if (options.write_expected) return write_expected(options.expected, std::move(expected), rows);
@@ -126,7 +131,9 @@ void make_report(const Selection& selection, const ReportOptions& options, Progr
             "worse than {}; where the change is meant, `./smelt report --quick --write-expected` stores the errors "
             "anew",
             options.expected.string()));
-  fail_with(failures(rows), fmt::format("the rest is in {}", (options.folder / "index.html").string()));
+  const std::vector<std::string> failed = failures(rows);
+  complaints.insert(complaints.end(), failed.begin(), failed.end());
+  fail_with(complaints, fmt::format("the rest is in {}", (options.folder / "index.html").string()));
 }
 
 }  // namespace smelt

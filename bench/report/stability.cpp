@@ -171,6 +171,21 @@ Section write_stability_section(const Stability& stability, bool quick, const st
           out};
 }
 
+std::vector<std::string> failures(const Stability& stability) {
+  std::vector<std::string> out;
+  for (const HardCaseResult& result : stability.cases) {
+    const Trial& usual = *result.at(default_courant);
+    if (!usual.failure.empty())
+      out.push_back(
+          fmt::format("stability, {} at the CFL factor {:g} gave up: {}", result.name, default_courant, usual.failure));
+    else if (!usual.held())
+      out.push_back(
+          fmt::format("stability, {} at the CFL factor {:g} gained {:.2g} of its kinetic energy; {:g} is allowed",
+                      result.name, default_courant, usual.seen.energy_gain, extremes::energy_bar));
+  }
+  return out;
+}
+
 std::string write_stability_csv(const Stability& stability) {
   std::string out = "scene,jump,courant,energy_gain,density_error,steps,verdict\n";
   for (const HardCaseResult& result : stability.cases)

@@ -47,6 +47,9 @@ Stability probe_stability(bool quick, unsigned threads, Progress& progress);
 /// A table of the hard cases and the maps of both methods. Draws with gnuplot in `folder`.
 Section write_stability_section(const Stability& stability, bool quick, const std::filesystem::path& folder);
 
+/// The hard cases that did not hold at the usual CFL factor, a line each.
+std::vector<std::string> failures(const Stability& stability);
+
 /// One row a trial.
 std::string write_stability_csv(const Stability& stability);
 

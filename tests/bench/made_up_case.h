@@ -17,7 +17,7 @@ inline Case made_up_case(const std::string& name) {
           .title = "Made-up <case>",
           .measures = "How fast a made-up error falls.",
           .good = "Below 0.01.",
-          .good_error = 0.01,
+          .good_errors = {0.01},
           .error_label = "made-up error",
           .resolution_label = "particles",
           .profile_x = "x [m]",

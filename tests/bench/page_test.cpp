@@ -62,6 +62,19 @@ TEST(Page, ShowsPlotsFiguresAndFailures) {
   EXPECT_FALSE(std::filesystem::exists(folder / "one_cost.gnuplot")) << "scripts are taken away";
 }
 
+// A case may measure several quantities, each with its own good number.
+TEST(Page, JudgesEachMethodByItsOwnGoodNumber) {
+  if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
+  Case problem = made_up_case("two");
+  problem.good_errors = {0.01, 0.001};
+  const auto [summary, section] = write_case_section(run_cases({problem})[0], true, testing::TempDir());
+  EXPECT_EQ(count(summary, "<td>0.00125</td><td>0.01</td><td>yes</td>"), 1u) << summary;
+  EXPECT_EQ(count(summary, "<td>0.00125</td><td>0.001</td><td>no</td>"), 1u) << summary;
+  const auto one = write_case_section(run_cases({made_up_case("one")})[0], true, testing::TempDir()).body;
+  const std::string dotted = "stroke-dasharray";
+  EXPECT_GT(count(section, dotted), count(one, dotted)) << "a line for each of the numbers";
+}
+
 TEST(Gnuplot, LeavesOutWhatALogarithmCannotShow) {
   if (!has_gnuplot()) GTEST_SKIP() << "gnuplot is not installed";
   const Plot plot{

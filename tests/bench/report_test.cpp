@@ -1,6 +1,8 @@
 #include "bench/report/report.h"
 
 #include "bench/cases/all_cases.h"
+#include "bench/cases/extremes.h"
+#include "bench/report/stability.h"
 #include "core/error.h"
 #include "io/atomic_file.h"
 #include "tests/bench/made_up_case.h"
@@ -27,7 +29,8 @@ TEST(Report, EveryCaseSaysWhatItIs) {
     EXPECT_TRUE(std::is_sorted(problem.quick.begin(), problem.quick.end()) &&
                 std::is_sorted(problem.full.begin(), problem.full.end()));
     EXPECT_FALSE(problem.methods.empty());
-    EXPECT_GT(problem.good_error, 0.0);
+    EXPECT_TRUE(problem.good_errors.size() == 1 || problem.good_errors.size() == problem.methods.size());
+    for (const double good : problem.good_errors) EXPECT_GT(good, 0.0);
   }
   EXPECT_GE(names.size(), 12u);
 }
@@ -94,6 +97,22 @@ TEST(Report, ChecksAgainstStoredErrors) {
   EXPECT_NO_THROW(make_report({{problem}, false}, options, silent));
   problem.run = [](std::size_t, double resolution) { return Measurement{.error = 2.3 / (resolution * resolution)}; };
   EXPECT_THROW(make_report({{problem}, false}, options, silent), Error);
+}
+
+// `--check` minds the hard cases too: those that gave up or gained energy at the usual time step.
+TEST(Report, NamesTheHardCasesThatDidNotHold) {
+  using extremes::default_courant;
+  Watched sound, gained;
+  gained.energy_gain = 2.0 * extremes::energy_bar;
+  Stability stability;
+  stability.cases = {{"held", {{0.1, sound, "gave up elsewhere"}, {default_courant, sound, ""}}},
+                     {"gave up", {{default_courant, sound, "NaN at step 3"}}},
+                     {"gained", {{default_courant, gained, ""}}}};
+  const std::vector<std::string> complaints = failures(stability);
+  ASSERT_EQ(complaints.size(), 2u);
+  EXPECT_NE(complaints[0].find("stability, gave up"), std::string::npos) << complaints[0];
+  EXPECT_NE(complaints[0].find("NaN at step 3"), std::string::npos) << complaints[0];
+  EXPECT_NE(complaints[1].find("stability, gained"), std::string::npos) << complaints[1];
 }
 
 }  // namespace

@@ -1,11 +1,18 @@
 #include "bench/report/suite.h"
 
+#include "bench/in_child.h"
+#include "core/error.h"
 #include "tests/bench/made_up_case.h"
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
 #include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <new>
+#include <string>
+#include <unistd.h>
 
 namespace smelt {
 namespace {
@@ -63,6 +70,39 @@ TEST(Suite, PassesOnWhatItsCallerThrows) {
   EXPECT_THROW(run_suite({made_up_case("one"), made_up_case("two")}, true, 2, silent,
                          [](CaseResult) { fail("the disk is full"); }),
                Error);
+}
+
+// What goes wrong in a child process comes back as what it was, and nothing is printed twice.
+TEST(InChild, SendsItsResultOrItsError) {
+  EXPECT_EQ(run_in_child([] { return 42; }), 42);
+  const auto failing = [](auto error) { return [error]() -> int { throw error; }; };
+  const auto text_of = [](const auto& act) -> std::string {
+    try {
+      act();
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "nothing was thrown";
+  };
+  EXPECT_THROW(run_in_child(failing(DivergedError("NaN"))), DivergedError);
+  EXPECT_THROW(run_in_child(failing(std::bad_alloc())), Error);
+  EXPECT_THROW(run_in_child(failing(InternalError("ours"))), InternalError);
+  EXPECT_EQ(text_of([&] { run_in_child(failing(Error("where, what, how"))); }), "where, what, how");
+  EXPECT_NE(text_of([&] { run_in_child(failing(InternalError("ours"))); }).find("ours"), std::string::npos);
+  EXPECT_NE(text_of([] { run_in_child([] { return kill(getpid(), SIGKILL); }); }).find("memory runs out"),
+            std::string::npos);
+  EXPECT_NE(text_of([] { run_in_child([] { return kill(getpid(), SIGTERM); }); }).find("signal 15"), std::string::npos);
+}
+
+TEST(InChild, PrintsOnce) {
+  testing::internal::CaptureStdout();
+  std::printf("once ");
+  run_in_child([] {
+    std::fflush(stdout);
+    return 0;
+  });
+  std::fflush(stdout);
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "once ");
 }
 
 }  // namespace

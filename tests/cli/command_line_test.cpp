@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -205,6 +206,7 @@ TEST_F(CommandLine, BenchAnswersForPeopleAndMachines) {
   EXPECT_NE(run({"bench", "thesis", "--shot", "wall", "--json"}).out.find("\"times_as_fast\""), std::string::npos);
   EXPECT_EQ(run({"bench", "thesis", "--shot", "teapot"}).status, 2);
   EXPECT_EQ(run({"bench"}).status, 2);
+  EXPECT_EQ(run({"bench", "--calibrate", "step"}).status, 2);
 }
 
 TEST_F(CommandLine, ReportNamesItsCasesAndWhatItNeeds) {
@@ -239,6 +241,51 @@ TEST_F(CommandLine, AFullDiskIsExitThreeAndFinishedFramesStay) {
   EXPECT_EQ(result.status, 3) << result.err;
   EXPECT_NE(result.err.find("particles.0001.vdb"), std::string::npos) << result.err;
   EXPECT_FALSE(fs::exists(output("out") + "/particles/particles.0001.vdb")) << "half a file is worse than none";
+}
+
+void redirect_to(int fd, const char* path) {
+  const int file = open(path, O_WRONLY);
+  dup2(file, fd);
+  close(file);
+}
+
+// What goes to stdout is the result: where it cannot be written the command has failed.
+TEST_F(CommandLine, AFullStdoutIsExitThree) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "there is no /dev/full";
+  const std::string bunny = source_folder().string() + "/assets/bunny.obj";
+  for (const std::vector<std::string>& arguments :
+       {std::vector<std::string>{"info", bunny}, {"scene-reference"}, {"--help"}, {"--version"}}) {
+    const Result result = run(arguments, [] { redirect_to(STDOUT_FILENO, "/dev/full"); });
+    EXPECT_EQ(result.status, 3) << arguments[0];
+    EXPECT_NE(result.err.find("standard output"), std::string::npos) << arguments[0] << ": " << result.err;
+    EXPECT_NE(result.err.find("No space left"), std::string::npos) << arguments[0] << ": " << result.err;
+    EXPECT_EQ(run(arguments, [] { close(STDOUT_FILENO); }).status, 3) << arguments[0];
+  }
+}
+
+// What goes to stderr is talk: a shot goes on without it.
+TEST_F(CommandLine, AStderrThatCannotBeWrittenStopsNothing) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  close(ends[0]);
+  const std::vector<std::function<void()>> ways = {[] { close(STDERR_FILENO); }, [&] { dup2(ends[1], STDERR_FILENO); },
+                                                   [] { redirect_to(STDERR_FILENO, "/dev/full"); }};
+  for (std::size_t k = 0; k < ways.size(); ++k) {
+    // The second run says that it moved the first one aside.
+    for (int again = 0; again < 2; ++again)
+      EXPECT_EQ(run({"simulate", small_scene(), "-o", output("out"), "--frames", "1"}, ways[k]).status, 0) << k;
+    EXPECT_EQ(run({"simulate", small_scene(), "-o", output("out"), "--set", "shot.fps=-1"}, ways[k]).status, 3) << k;
+    EXPECT_NO_THROW(read_particles(output("out") + "/particles/particles.0001.vdb")) << k;
+  }
+  close(ends[1]);
+}
+
+// Where nobody asks whether to stop, an interrupt ends the program by itself.
+TEST_F(CommandLine, AnInterruptEndsABench) {
+  const pid_t child = start({"bench", "pairs", "--particles", "1000000"}, [] { signal(SIGINT, SIG_DFL); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  kill(child, SIGINT);
+  EXPECT_EQ(finish(child).status, 128 + SIGINT);
 }
 
 TEST_F(CommandLine, AFolderThatCannotBeMadeIsExitThree) {
@@ -302,6 +349,7 @@ TEST_F(CommandLine, PicturesThatCannotBeDrawnNameTheirKeyAndFile) {
                  {"environment.image", "no.exr"});
   expect_refusal({"--colour-by", "speed"}, {"--colour-by", "--look diagnostic"});
   expect_refusal({"--look", "diagnostic", "--colour-range", "5:1"}, {"--colour-range 5:1", "below"});
+  expect_refusal({"--look", "diagnostic", "--resume"}, {"--resume", "leave it out"});
   expect_refusal({"--sheet", "4y3"}, {"--sheet 4y3", "4x3"});
   // Rest positions asked for after the simulation: the caches have none.
   expect_refusal({"--set", "particles.rest_position=true", "--set", "look.crust.plate_m=0.1"},
@@ -376,6 +424,127 @@ TEST_F(CommandLine, ResumingAnotherSceneIsRefused) {
   EXPECT_NE(result.err.find("another scene"), std::string::npos) << result.err;
 }
 
+// A scene.toml is nobody's result: the user's own folder is neither written over nor moved.
+TEST_F(CommandLine, AFolderWithTheUsersOwnFilesStaysWhereItIs) {
+  const fs::path shot = folder_ / "shot";
+  fs::create_directory(shot);
+  fs::copy_file(small_scene(), shot / "scene.toml");
+  const auto in_it = [&] { ASSERT_EQ(chdir(shot.c_str()), 0); };
+  for (const char* stage : {"run", "simulate"})
+    for (const std::vector<std::string>& more : {std::vector<std::string>{}, {"--resume"}}) {
+      std::vector<std::string> arguments = {stage, "scene.toml", "-o", ".", "--frames", "1"};
+      arguments.insert(arguments.end(), more.begin(), more.end());
+      const Result result = run(arguments, in_it);
+      EXPECT_EQ(result.status, 3);
+      EXPECT_NE(result.err.find("scene.toml: is in the way and no run of smelt wrote it"), std::string::npos)
+          << result.err;
+    }
+  EXPECT_EQ(read_file(shot / "scene.toml"), read_file(small_scene()));
+  EXPECT_FALSE(fs::exists(folder_ / "shot.1"));
+
+  fs::rename(shot / "scene.toml", shot / "shot.toml");
+  ASSERT_EQ(run({"simulate", "shot.toml", "-o", ".", "--frames", "1"}, in_it).status, 0);
+  const Result again = run({"simulate", "shot.toml", "-o", ".", "--frames", "1"}, in_it);
+  EXPECT_EQ(again.status, 3);
+  EXPECT_NE(again.err.find("would be moved aside, but you are in it"), std::string::npos) << again.err;
+  const Result outside = run({"simulate", (shot / "shot.toml").string(), "-o", shot.string(), "--frames", "1"});
+  EXPECT_EQ(outside.status, 3);
+  EXPECT_NE(outside.err.find("would be moved aside, but the scene is in it"), std::string::npos) << outside.err;
+  EXPECT_TRUE(fs::exists(shot / "particles" / "particles.0001.vdb"));
+  EXPECT_FALSE(fs::exists(folder_ / "shot.1"));
+}
+
+TEST_F(CommandLine, ARunThatIsRefusedLeavesTheEarlierResultAlone) {
+  ASSERT_EQ(run({"simulate", small_scene(), "-o", output("out"), "--frames", "1"}).status, 0);
+  const Result result = run({"run", small_scene(), "-o", output("out"), "--set", "body.0.stand_at_y_m=-5"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_NE(result.err.find("below the ground"), std::string::npos) << result.err;
+  EXPECT_TRUE(fs::exists(output("out") + "/particles/particles.0001.vdb"));
+  EXPECT_FALSE(fs::exists(output("out.1")));
+}
+
+// Starting over on top of frames would leave surfaces and pictures of the earlier ones beside new particles.
+TEST_F(CommandLine, ResumingWithoutCheckpointsIsRefusedWhereFramesWouldBeLost) {
+  ASSERT_EQ(run({"simulate", small_scene(), "-o", output("out"), "--frames", "1"}).status, 0);
+  const fs::path out = output("out");
+  fs::remove_all(out / "checkpoint");
+  const auto resume = [&](std::vector<std::string> more) {
+    std::vector<std::string> arguments = {"simulate", small_scene(), "-o", out.string(), "--frames", "1-2", "--resume"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run(arguments);
+  };
+  const Result other = resume({"--set", "material.0.density_kg_m3=1000"});
+  EXPECT_EQ(other.status, 3);
+  EXPECT_NE(other.err.find("another scene"), std::string::npos) << other.err;
+  // Cut off in the first frame: that is made again.
+  EXPECT_EQ(resume({}).status, 0);
+  fs::remove_all(out / "checkpoint");
+  const std::string kept = read_file(out / "particles/particles.0002.vdb");
+  const Result later = resume({});
+  EXPECT_EQ(later.status, 3);
+  EXPECT_NE(later.err.find("no checkpoints"), std::string::npos) << later.err;
+  EXPECT_NE(later.err.find("particles.0002.vdb"), std::string::npos) << later.err;
+  EXPECT_TRUE(read_file(out / "particles/particles.0002.vdb") == kept);
+  // Surfaces and pictures need no checkpoint.
+  EXPECT_EQ(run({"surface", small_scene(), "-o", out.string(), "--frames", "1-2", "--resume"}).status, 0);
+}
+
+// A scene in several files is its vertices too, wherever they lie.
+TEST_F(CommandLine, ResumingWithOtherBuffersOfAMeshIsRefused) {
+  const std::array<float, 12> corners = {0, 0, 0, 0.3f, 0, 0, 0, 0.3f, 0, 0, 0, 0.3f};
+  const auto write_buffer = [&](float scale) {
+    std::ofstream file(folder_ / "body.bin", std::ios::binary);
+    for (const float x : corners) {
+      const float scaled = scale * x;
+      file.write(reinterpret_cast<const char*>(&scaled), sizeof scaled);
+    }
+    const std::array<std::uint16_t, 12> faces = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    file.write(reinterpret_cast<const char*>(faces.data()), sizeof faces);
+  };
+  write_buffer(1.0f);
+  std::ofstream(folder_ / "body.gltf") << R"({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+"nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+"buffers": [{"uri": "body.bin", "byteLength": 72}],
+"bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 24}],
+"accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [0.3, 0.3, 0.3]},
+{"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"}]})";
+  const std::vector<std::string> arguments = {
+      "simulate",    small_scene(),    "-o",
+      output("out"), "--set",          "body.0.mesh=" + (folder_ / "body.gltf").string(),
+      "--set",       "body.0.scale=1", "--frames",
+      "1",           "--resume"};
+  const Result first = run(arguments);
+  ASSERT_EQ(first.status, 0) << first.err;
+  EXPECT_EQ(run(arguments).status, 0);
+  write_buffer(1.1f);
+  const Result other = run(arguments);
+  EXPECT_EQ(other.status, 3);
+  EXPECT_NE(other.err.find("other meshes"), std::string::npos) << other.err;
+}
+
+// The bytes of the report are all that a stage wrote for the frame, checkpoints left out.
+TEST_F(CommandLine, TheReportCountsAllBytes) {
+  std::ofstream(folder_ / "ball.toml") << read_file(small_scene())
+                                       << "[[collider]]\nmesh = \"assets/sphere.obj\"\nscale = 0.1\n"
+                                          "translate_m = [1.0, 1.0, 0.0]\nmass_kg = 5.0\n";
+  const Result result =
+      run({"run", output("ball.toml"), "-o", output("out"), "--frames", "1-2", "--set", "render.exr=true"});
+  ASSERT_EQ(result.status, 0) << result.err;
+  const fs::path out = output("out");
+  const auto report = nlohmann::json::parse(read_file(out / "run.json"));
+  for (int frame = 1; frame <= 2; ++frame) {
+    const auto bytes = [&](std::initializer_list<const char*> names) {
+      std::uintmax_t n = 0;
+      for (const char* name : names) n += fs::file_size(out / fmt::format(fmt::runtime(name), frame));
+      return n;
+    };
+    const auto& entry = report["frames"][static_cast<std::size_t>(frame) - 1];
+    EXPECT_EQ(entry["simulate"]["bytes"], bytes({"particles/particles.{:04}.vdb", "bodies/bodies.{:04}.json"}));
+    EXPECT_EQ(entry["surface"]["bytes"], bytes({"surface/surface.{:04}.obj", "surface/surface.{:04}.vdb"}));
+    EXPECT_EQ(entry["render"]["bytes"], bytes({"frames/frame.{:04}.png", "frames/frame.{:04}.exr"}));
+  }
+}
+
 TEST_F(CommandLine, ADamagedCheckpointFallsBackToTheOneBefore) {
   ASSERT_EQ(run({"simulate", small_scene(), "-o", output("whole")}).status, 0);
   ASSERT_EQ(run({"simulate", small_scene(), "-o", output("out"), "--frames", "1-3"}).status, 0);
@@ -399,6 +568,12 @@ TEST_F(CommandLine, CheckAndInfoAnswer) {
   EXPECT_NE(mesh.out.find("closed     yes"), std::string::npos) << mesh.out;
   EXPECT_NE(mesh.out.find("194.288"), std::string::npos) << mesh.out;
   EXPECT_EQ(run({"info", small_scene()}).status, 3);
+  fs::copy_file(source_folder() / "assets/bunny.obj", folder_ / "BUNNY.OBJ");
+  EXPECT_EQ(run({"info", output("BUNNY.OBJ")}).out, mesh.out);
+  write_obj(folder_ / "empty.obj", {});
+  const Result empty = run({"info", output("empty.obj")});
+  EXPECT_EQ(empty.status, 0) << empty.err;
+  EXPECT_NE(empty.out.find("vertices   0\n"), std::string::npos) << empty.out;
 }
 
 // Particles that come and go: caches, checkpoints, surfaces, pictures and the report with another number of them in

@@ -67,6 +67,21 @@ class SurfaceSeries : public CommandLine {
   }
 };
 
+// Two machines make their shares of the frames in one folder: neither forgets what the other made.
+TEST_F(SurfaceSeries, TwoAtATimeKeepWhatTheOtherMade) {
+  for (int frame = 1; frame <= 8; ++frame) write_csv(frame, ball(6.0));
+  const auto part = [&](const char* frames) {
+    return start({"surface", pattern(), "-o", output("out"), "--resume", "--frames", frames});
+  };
+  const pid_t first = part("1-4"), second = part("5-8");
+  EXPECT_EQ(finish(first).status, 0);
+  EXPECT_EQ(finish(second).status, 0);
+  const std::string settings = read_file(output("out") + "/surface/settings.toml");
+  EXPECT_EQ(settings.substr(0, settings.find('\n')), "# frames = 1 2 3 4 5 6 7 8");
+  const Result again = run({"surface", pattern(), "-o", output("out"), "--resume"});
+  EXPECT_NE(again.out.find("0 made, 8 kept"), std::string::npos) << again.out;
+}
+
 TEST_F(SurfaceSeries, CloudsOfAnotherSolverBecomeSurfaces) {
   for (int frame = 3; frame <= 6; ++frame) write_csv(frame, ball(6.0));
   const Result result = run({"surface", pattern(), "-o", output("out"), "--frames", "4-6", "--set", "surface.ply=true",

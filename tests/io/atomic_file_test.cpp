@@ -5,6 +5,9 @@
 #include "tests/meshes.h"
 
 #include <array>
+#include <chrono>
+#include <csignal>
+#include <fstream>
 #include <grp.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -48,6 +51,38 @@ TEST(AtomicFile, LeavesTheOldFileWhereTheWriterThrows) {
                std::runtime_error);
   EXPECT_EQ(read_file(folder / "file"), "old");
   EXPECT_EQ(count_files(folder), 1u);
+}
+
+// A killed writer cannot take its temporary file away; the next one does, unless somebody may still write to it.
+TEST(AtomicFile, SweepsWhatKilledWritersLeft) {
+  const fs::path folder = make_folder("killed");
+  const pid_t child = ::fork();
+  if (child == 0) {
+    write_file_atomically(folder / "file", [](const fs::path&) { ::kill(::getpid(), SIGKILL); });
+    ::_exit(0);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  ASSERT_EQ(count_files(folder), 1u);
+  const fs::path left = fs::directory_iterator(folder)->path();
+  // Of another machine: that process cannot be asked. A day later it is taken for dead.
+  const std::string mark = left.filename().string().substr(5, 8);
+  const fs::path elsewhere = folder / ("file." + std::string(mark == "00000000" ? "11111111" : "00000000") +
+                                       left.filename().string().substr(13));
+  const fs::path old = folder / "file.22222222-1-33333333.tmp", other = folder / "file.of-mine-too.tmp.txt";
+  for (const fs::path& path : {elsewhere, old, other}) std::ofstream(path) << "half";
+  fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(25));
+  write_file_atomically(folder / "file", [&](const fs::path&) {
+    // A second writer of the same file meanwhile.
+    write_file_atomically(folder / "file", "second");
+  });
+  EXPECT_FALSE(fs::exists(left));
+  EXPECT_FALSE(fs::exists(old));
+  EXPECT_TRUE(fs::exists(elsewhere));
+  EXPECT_TRUE(fs::exists(other));
+  EXPECT_TRUE(fs::exists(folder / "file"));
+  EXPECT_EQ(count_files(folder), 3u);
 }
 
 TEST(AtomicFile, ReportsAFullDisk) {

@@ -78,6 +78,24 @@ TEST_F(HeightFieldFile, EsriGrid) {
   EXPECT_EQ(scaled.height[4], 2.75);
 }
 
+TEST_F(HeightFieldFile, NanMayMarkMissingHeights) {
+  const std::string head = "ncols 2\nnrows 2\ncellsize 1\n";
+  EXPECT_EQ(read_height_field(write("nan.asc", head + "NODATA_value nan\n1 2\n3 4\n"), {}).height.size(), 4u);
+  EXPECT_EQ(error_of("nan.asc", head + "NODATA_value nan\n1 2\n3 nan\n"),
+            "nan.asc:6: row 2, column 2: NODATA (nan); a terrain has no holes, fill the gap in the data");
+  EXPECT_EQ(error_of("nan.asc", "ncols 2\nnrows 2\ncellsize nan\n1 2\n3 4\n"),
+            "nan.asc:3: cellsize must be a finite number of metres, is nan");
+}
+
+TEST_F(HeightFieldFile, UpperCaseExtensionsSignsAndByteOrderMarks) {
+  EXPECT_TRUE(is_height_field("A.ASC") && is_height_field("a.Csv") && is_height_field("a.PNG"));
+  EXPECT_EQ(read_height_field(write("A.ASC", "\xef\xbb\xbf" + grid), {}).cell, 2.5);
+  EXPECT_EQ(read_height_field(write("A.CSV", "\xef\xbb\xbf+1,2\n3,-4\n"), {1.0, 1.0, 0.0, 1.0}).height,
+            (std::vector<double>{1, 2, 3, -4}));
+  EXPECT_EQ(error_of("a.csv", "+-1,2\n3,4\n", {1.0, 1.0, 0.0, 1.0}),
+            "a.csv:1: row 1, column 1: expected a number, found \"+-1\"");
+}
+
 TEST_F(HeightFieldFile, CsvWithAnySeparator) {
   const HeightField f =
       read_height_field(write("a.csv", "# heights\n1,2,3\r\n4; 5; 6\n\n7\t8 9"), {10.0, 2.0, 0.0, 1.0});

@@ -77,6 +77,17 @@ TEST(MeshImport, ReadsPly) {
   expect_box(import_text("binary.ply", binary));
 }
 
+// Vertices that no face uses neither blow up what is welded nor need be numbers.
+TEST(MeshImport, LeavesOutVerticesThatNoFaceUses) {
+  std::string text = ply_header("ascii");
+  text.replace(text.find("vertex 8"), 8, "vertex 10");
+  text += "1e30 1e30 1e30\n";
+  for (const Vec3& v : box.vertices) text += fmt::format("{} {} {}\n", v.x(), v.y(), v.z());
+  text += "nan 0 0\n";
+  for (const auto& t : box.triangles) text += fmt::format("3 {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  expect_box(import_text("loose.ply", text));
+}
+
 TEST(MeshImport, ReadsStlAndWeldsItsCorners) {
   std::string ascii = "solid box\n", binary(80, '\0');
   append_bytes(binary, std::uint32_t{12});

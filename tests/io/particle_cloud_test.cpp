@@ -43,6 +43,11 @@ TEST(ParticleCloud, CsvAsParaViewWritesIt) {
   EXPECT_EQ(c.velocity, (std::vector<Vec3f>{Vec3f(1, 2, 3)}));
 }
 
+TEST(ParticleCloud, CsvWithAByteOrderMark) {
+  const ParticleCloud c = read_particle_cloud(write("mark.CSV", "\xef\xbb\xbfx,y,z\n1,2,3\n"));
+  EXPECT_EQ(c.position, (std::vector<Vec3>{Vec3(1, 2, 3)}));
+}
+
 TEST(ParticleCloud, XyzIsThreeNumbersALine) {
   EXPECT_EQ(read_particle_cloud(write("a.xyz", "1 2 3\n\t4  5 6\n# end\n")).position,
             (std::vector<Vec3>{Vec3(1, 2, 3), Vec3(4, 5, 6)}));
@@ -60,7 +65,7 @@ TEST(ParticleCloud, PlyInBothByteOrders) {
       little("\0\0\0\0\0\0\xf0\x3f\0\0\0\x40\x03\0\0\0\x7a\x44", 18);
   for (const ParticleCloud& c : {read_particle_cloud(write("big.ply", header("binary_big_endian") + big)),
                                  read_particle_cloud(write("little.ply", header("binary_little_endian") + little)),
-                                 read_particle_cloud(write("ascii.ply", header("ascii") + "1 2 3 1000\n"))}) {
+                                 read_particle_cloud(write("ascii.ply", header("ascii") + "+1.0 2 +3e0 1000\n"))}) {
     EXPECT_EQ(c.position, (std::vector<Vec3>{Vec3(1, 2, 3)}));
     EXPECT_EQ(c.density, (std::vector<float>{1000}));
   }

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "io/vdb_summary.h"
 #include "tests/io/disk_limit.h"
 #include "tests/meshes.h"
 
@@ -33,6 +34,20 @@ TEST(VdbFile, EqualContentGivesEqualBytes) {
   EXPECT_NE(one.substr(21, 36), other.substr(21, 36)) << "the UUID tells contents apart";
 }
 
+// OpenVDB puts random digits into its UUIDs, an 8 where ours have their version among them.
+TEST(VdbFile, ReadsFilesOfOtherPrograms) {
+  openvdb::io::File file(temporary("foreign.vdb").string());
+  file.write(openvdb::GridCPtrVec{make_grid(1.0f)});
+  file.close();
+  std::string bytes = read_file(temporary("foreign.vdb"));
+  bytes[21 + 14] = '8';
+  write_file_atomically(temporary("foreign.vdb"), bytes);
+  EXPECT_EQ(read_vdb(temporary("foreign.vdb")).size(), 1u);
+  EXPECT_FALSE(summarise_vdb(temporary("foreign.vdb")).at(0).is_of_smelt);
+  write_vdb(temporary("own.vdb"), {make_grid(1.0f)});
+  EXPECT_TRUE(summarise_vdb(temporary("own.vdb")).at(0).is_of_smelt);
+}
+
 TEST(VdbFile, OpensInOpenVdb) {
   write_vdb(temporary("open.vdb"), {make_grid(1.0f)});
   openvdb::io::File file(temporary("open.vdb").string());
@@ -56,7 +71,8 @@ TEST(VdbFile, ReportsAFullDiskWhateverPartDoesNotFit) {
     }
     EXPECT_EQ(message.find(temporary("full.vdb").string() + ": cannot be written"), 0u) << message;
     EXPECT_EQ(read_file(temporary("full.vdb")), whole);
-    EXPECT_FALSE(std::filesystem::exists(temporary("full.vdb.tmp")));
+    for (const auto& entry : std::filesystem::directory_iterator(testing::TempDir()))
+      EXPECT_FALSE(entry.path().string().starts_with(temporary("full.vdb").string() + ".")) << entry.path();
   }
 }
 

@@ -1,18 +1,23 @@
 #include "scenes/advise.h"
 
+#include "io/atomic_file.h"
 #include "scenes/check_scene.h"
 #include "scenes/expected_speed.h"
+#include "scenes/machine_pace.h"
 #include "scenes/scene_reader.h"
 #include "tests/source_folder.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numbers>
 #include <numeric>
+#include <unistd.h>
 
 namespace smelt {
 namespace {
@@ -100,6 +105,27 @@ TEST(Advise, AFloorOfTheTimeStepThatStopsTheShot) {
   // Following it clears it.
   const std::string choose = advice.substr(advice.rfind("choose ") + 7);
   EXPECT_EQ(advice_on({"time_step.min_s=" + choose.substr(0, choose.find('\n'))}), "");
+}
+
+// A home folder may be shared: what another machine was calibrated to says nothing of this one.
+TEST(MachinePace, IsThatOfThisMachineAlone) {
+  const auto folder = std::filesystem::path(testing::TempDir()) / ("pace_" + std::to_string(::getpid()));
+  std::filesystem::remove_all(folder);
+  ::setenv("XDG_CACHE_HOME", folder.c_str(), 1);
+  EXPECT_FALSE(measure_load());
+  EXPECT_GT(calibrate_pace(), 0.0);
+  EXPECT_GE(measure_load().value_or(0.0), 1.0);
+  const nlohmann::json here = nlohmann::json::parse(read_file(pace_file()));
+  for (const char* key : {"cpu", "threads", "smelt"}) {
+    nlohmann::json other = here;
+    other[key] = "another";
+    write_file_atomically(pace_file(), other.dump());
+    EXPECT_FALSE(measure_load()) << key;
+    other.erase(key);  // as an earlier smelt wrote it
+    write_file_atomically(pace_file(), other.dump());
+    EXPECT_FALSE(measure_load()) << key;
+  }
+  ::unsetenv("XDG_CACHE_HOME");
 }
 
 }  // namespace
