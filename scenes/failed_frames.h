@@ -11,6 +11,12 @@
 
 namespace smelt {
 
+/// Some frames of a stage could not be made; the others are done, and later stages can go on with them.
+class FramesFailed : public Error {
+ public:
+  using Error::Error;
+};
+
 /// Runs the work of one frame after another and remembers what went wrong.
 class FailedFrames {
  public:
@@ -31,11 +37,12 @@ class FailedFrames {
     }
   }
 
-  /// Throws Error with the first of them, if there was any.
+  /// Throws FramesFailed with the first of them, if there was any.
   void throw_if_any() const {
     if (n_failed_ == 0) return;
-    if (n_failed_ == 1) fail("{}", first_);
-    fail("{}\n  and {} more frames of stage \"{}\"; the others are done", first_, n_failed_ - 1, stage_);
+    if (n_failed_ == 1) throw FramesFailed(first_);
+    throw FramesFailed(
+        fmt::format("{}\n  and {} more frames of stage \"{}\"; the others are done", first_, n_failed_ - 1, stage_));
   }
 
  private:

@@ -2,11 +2,13 @@
 
 #include "core/error.h"
 #include "io/atomic_file.h"
+#include "scenes/failed_frames.h"
 #include "scenes/film.h"
 
 #include <charconv>
 #include <chrono>
 #include <functional>
+#include <optional>
 
 namespace smelt {
 
@@ -61,8 +63,20 @@ RunSummary run_scene(const Scene& scene, const RunOptions& options, Progress& pr
   RunReport report(folder.report(), options.resume);
   const StageOptions stage{summary.frames, options.resume};
   summary.simulate_seconds = timed([&] { simulate_frames(scene, folder, stage, report, progress); });
-  summary.surface_seconds = timed([&] { surface_frames(scene, folder, stage, report, progress); });
-  summary.render_seconds = timed([&] { render_frames(scene, folder, stage, report, progress); });
+  // What has a surface is drawn before a surface that failed ends the run.
+  std::optional<FramesFailed> failed;
+  const auto attempt = [&](auto frames_of_stage) {
+    return timed([&] {
+      try {
+        frames_of_stage(scene, folder, stage, report, progress);
+      } catch (const FramesFailed& error) {
+        if (!failed) failed = error;
+      }
+    });
+  };
+  summary.surface_seconds = attempt(surface_frames);
+  summary.render_seconds = attempt(render_frames);
+  if (failed) throw FramesFailed(*failed);
   if (summary.frames.last == scene.shot.frames) {
     std::string why_not;
     summary.film = encode_film(folder, scene.shot.name, scene.shot.frames, scene.shot.fps, why_not);

@@ -331,6 +331,22 @@ TEST_F(CommandLine, DamagedSurfacesCostTheirOwnFramesOnly) {
   EXPECT_TRUE(fs::exists(out / "frames/frame.0004.png"));
 }
 
+/// The same in a run of all stages: what has a surface is drawn before the run ends.
+TEST_F(CommandLine, DamagedParticlesCostTheirOwnFrameOnly) {
+  ASSERT_EQ(run({"run", small_scene(), "-o", output("out")}).status, 0);
+  const fs::path out = output("out");
+  fs::remove_all(out / "frames");
+  fs::remove_all(out / "surface");
+  fs::resize_file(out / "particles/particles.0002.vdb", fs::file_size(out / "particles/particles.0002.vdb") / 2);
+  const Result result = run({"run", small_scene(), "-o", out.string(), "--resume"});
+  EXPECT_EQ(result.status, 3);
+  EXPECT_NE(result.err.find("small.toml: frame 2"), std::string::npos) << result.err;
+  EXPECT_NE(result.err.find("particles.0002.vdb"), std::string::npos) << result.err;
+  EXPECT_FALSE(fs::exists(out / "frames/frame.0002.png"));
+  for (const char* frame : {"0001", "0003", "0004"})
+    EXPECT_TRUE(fs::exists(out / fmt::format("frames/frame.{}.png", frame))) << frame;
+}
+
 TEST_F(CommandLine, PicturesThatCannotBeDrawnNameTheirKeyAndFile) {
   ASSERT_EQ(run({"run", small_scene(), "-o", output("out"), "--frames", "1-2"}).status, 0);
   const auto expect_refusal = [&](const std::vector<std::string>& more, const std::vector<std::string>& texts) {
