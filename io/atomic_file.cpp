@@ -3,15 +3,17 @@
 #include "core/error.h"
 #include "core/hash.h"
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <charconv>
 #include <csignal>
 #include <cstring>
 #include <ctime>
 #include <fcntl.h>
+#include <mutex>
 #include <random>
+#include <regex>
+#include <set>
+#include <string>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <system_error>
@@ -96,16 +98,11 @@ std::string machine_mark() {
   return fmt::format("{:08x}", hash_bytes(processes.string(), hash_bytes(name.data())) & 0xffffffff);
 }
 
-/// Temporary files of `path` are named path.MACHINE-PROCESS-RANDOM.tmp.
-std::string temporary_start(const std::filesystem::path& path) {
-  return path.filename().string() + ".";
-}
-
 /// Makes an empty file beside `path` that no other writer has, here or on another machine that shares the folder.
 std::filesystem::path make_temporary(const std::filesystem::path& path) {
   for (std::random_device random;;) {
-    const auto temporary = path.parent_path() / fmt::format("{}{}-{}-{:08x}.tmp", temporary_start(path), machine_mark(),
-                                                            ::getpid(), random());
+    std::filesystem::path temporary = path;  // path.MACHINE-PROCESS-RANDOM.tmp
+    temporary += fmt::format(".{}-{}-{:08x}.tmp", machine_mark(), ::getpid(), random());
     Descriptor file(temporary, O_WRONLY | O_CREAT | O_EXCL);
     if (file.is_open()) return temporary;
     if (errno != EEXIST) fail_to_write(path, errno);
@@ -114,33 +111,30 @@ std::filesystem::path make_temporary(const std::filesystem::path& path) {
 
 /// Whether the writer of a temporary file is gone for certain: its process on this machine ended, or nothing was
 /// written for a day.
-bool is_abandoned(const std::filesystem::path& temporary, std::string_view marks) {
+bool is_abandoned(const std::filesystem::path& temporary, const std::string& machine, pid_t process) {
   struct stat status {};
   if (::stat(temporary.c_str(), &status) != 0) return false;
   constexpr std::time_t day = 24 * 3600;
   if (std::time(nullptr) - status.st_mtime > day) return true;
-  const std::string here = machine_mark() + "-";
-  if (!marks.starts_with(here)) return false;
-  marks.remove_prefix(here.size());
-  pid_t process = 0;
-  const auto [end, error] = std::from_chars(marks.data(), marks.data() + marks.size(), process);
-  if (error != std::errc() || process <= 0 || !std::string_view(end, marks.data() + marks.size()).starts_with('-'))
-    return false;
-  return ::kill(process, 0) != 0 && errno == ESRCH;
+  return machine == machine_mark() && ::kill(process, 0) != 0 && errno == ESRCH;
 }
 
-/// Takes away what killed writers of the same file left. What cannot be taken away does no harm.
-void sweep_temporaries(const std::filesystem::path& path) {
-  const std::string start = temporary_start(path);
-  constexpr std::string_view end = ".tmp";
+/// Takes away what killed writers left in a folder, once in a process: a shot has thousands of files. What cannot be
+/// taken away does no harm.
+void sweep_temporaries(const std::filesystem::path& folder) {
+  static std::mutex mutex;
+  static std::set<std::filesystem::path> swept;
+  {
+    const std::lock_guard lock(mutex);
+    if (!swept.insert(std::filesystem::absolute(folder).lexically_normal()).second) return;
+  }
+  static const std::regex mark(R"(.*\.([0-9a-f]{8})-([0-9]{1,9})-[0-9a-f]{8}\.tmp)");
   std::error_code ignored;
-  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
   for (std::filesystem::directory_iterator entry(folder, ignored), last; !ignored && entry != last;
        entry.increment(ignored)) {
     const std::string name = entry->path().filename().string();
-    if (name.size() <= start.size() + end.size() || !name.starts_with(start) || !name.ends_with(end)) continue;
-    const std::string_view marks = std::string_view(name).substr(start.size(), name.size() - start.size() - end.size());
-    if (std::count(marks.begin(), marks.end(), '-') == 2 && is_abandoned(entry->path(), marks))
+    if (std::smatch parts;
+        std::regex_match(name, parts, mark) && is_abandoned(entry->path(), parts[1], std::stoi(parts[2])))
       ::unlink(entry->path().c_str());
   }
 }
@@ -156,7 +150,7 @@ void write_file_atomically(const std::filesystem::path& path,
   // Made here first: libraries seldom say why a file could not be.
   const std::filesystem::path temporary = make_temporary(path);
   try {
-    sweep_temporaries(path);
+    sweep_temporaries(path.has_parent_path() ? path.parent_path() : ".");
     write(temporary);
     flush_to_disk(temporary, path);
     if (::rename(temporary.c_str(), path.c_str()) != 0) fail_to_write(path, errno);

@@ -1,12 +1,7 @@
-// Compiled once for every instruction set that the machine at run time may have (Highway's dynamic dispatch).
-// AVX2, which smelt asks of any machine (Highway would start lower, as x86-64-v3 does not promise AES), and AVX-512,
-// with the same bytes (sum_row). Double precision, which serves studies, has AVX2 only.
-#define HWY_BASELINE_TARGETS HWY_AVX2
-#ifdef SMELT_AVX2_ONLY
-#define HWY_DISABLED_TARGETS (HWY_AVX3 | HWY_AVX3_DL)
-#else
-#define HWY_DISABLED_TARGETS HWY_AVX3_DL
-#endif
+// Compiled once for every instruction set that the machine at run time may have (Highway's dynamic dispatch), with the
+// same bytes (sum_row). Double precision, which serves studies, has AVX2 only.
+#include "core/sph/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/sph/pair_sums.cpp"
 // clang-format off

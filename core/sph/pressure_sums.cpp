@@ -1,10 +1,6 @@
 // Compiled once for every instruction set, as pair_sums.cpp is.
-#define HWY_BASELINE_TARGETS HWY_AVX2
-#ifdef SMELT_AVX2_ONLY
-#define HWY_DISABLED_TARGETS (HWY_AVX3 | HWY_AVX3_DL)
-#else
-#define HWY_DISABLED_TARGETS HWY_AVX3_DL
-#endif
+#include "core/sph/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/sph/pressure_sums.cpp"
 // clang-format off
