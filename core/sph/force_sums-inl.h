@@ -59,6 +59,7 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
   const auto one = hn::Set(d, Real(1));
   std::vector<std::int32_t> buffer(lists.room());
   for (std::size_t i = begin; i < end; ++i) {
+    fetch_ahead<with_stress>(fields, lists, i);
     const Real* record_i = fields.record(i);
     [[maybe_unused]] const Real* stress_i = with_stress ? fields.stress(i) : nullptr;
     const auto density_i = hn::Set(d, record_i[Fields::density_at]);
@@ -112,7 +113,7 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
       for (int a = 0; a < Dim; ++a) sum[a] = hn::MulAdd(along, x_ij[a], sum[a]);
     };
     Real total[n_sums];
-    sum_row<n_sums>(lists.read(i, buffer.data()), total, add_pairs);
+    sum_row<n_sums>(fields.read_row(lists, i, buffer.data()), total, add_pairs);
     for (int a = 0; a < Dim; ++a) {
       acceleration[i - begin][a] = total[a];
       if constexpr (with_stress)
@@ -135,6 +136,7 @@ void gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& l
   const auto two_beta = hn::Set(d, static_cast<Real>(2.0 * parameters.quadratic_artificial_viscosity));
   std::vector<std::int32_t> buffer(lists.room());
   for (std::size_t i = begin; i < end; ++i) {
+    fetch_ahead<false>(fields, lists, i);
     const Real* record_i = fields.record(i);
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
       const Neighbours<Dim, Real> pair(record_i, records, index);
@@ -155,7 +157,7 @@ void gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& l
       sum[Dim] = hn::MulAdd(weight, v_x, sum[Dim]);
     };
     Real total[Dim + 1];  // the force and the energy
-    sum_row<Dim + 1>(lists.read(i, buffer.data()), total, add_pairs);
+    sum_row<Dim + 1>(fields.read_row(lists, i, buffer.data()), total, add_pairs);
     std::copy_n(total, Dim, acceleration[i - begin].begin());
     energy_rate[i - begin] = Real(0.5) * total[Dim];
   }

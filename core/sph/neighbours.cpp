@@ -130,10 +130,11 @@ std::vector<Run> split_runs(const std::vector<Run>& runs) {
 
 /// What cells are sorted by. In 3D, rods of 8 x 4 cells along x one after another: what the particles of a few cells
 /// have in reach then lies in a core's own cache however many particles there are, in a dozen runs.
+constexpr int rod_y_bits = 3, rod_z_bits = 2;
 template <int Dim>
 std::uint64_t rank_cell(std::uint64_t key) {
   if constexpr (Dim < 3) return key;
-  constexpr int y_bits = 3, z_bits = 2;
+  constexpr int y_bits = rod_y_bits, z_bits = rod_z_bits;
   constexpr std::uint64_t axis_mask = max_cells - 1, y_mask = (1 << y_bits) - 1, z_mask = (1 << z_bits) - 1;
   const std::uint64_t x = key & axis_mask, y = (key >> bits_per_axis) & axis_mask, z = key >> (2 * bits_per_axis);
   std::uint64_t rank = z >> z_bits;
@@ -317,6 +318,9 @@ void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, do
         replace(block.bytes, bytes);
       },
       1);
+  // In a rod, two cells further along it.
+  const std::size_t n_across = Dim < 3 ? 0 : std::size_t{1} << (rod_y_bits + rod_z_bits);
+  lists.look_ahead = cells.empty() ? 0 : 2 * n_across * position.size() / cells.size();
   lists.longest = longest.empty() ? 0 : *std::max_element(longest.begin(), longest.end());
 }
 

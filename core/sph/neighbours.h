@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <immintrin.h>
 #include <memory_resource>
@@ -42,14 +43,19 @@ struct NeighbourLists {
   std::vector<Place> places;
   std::vector<std::int32_t> names;  ///< what places in the order of the search stand for; empty: themselves
   std::size_t longest = 0;          ///< row, in neighbours
-  int row_multiple = 1;             ///< a power of two, up to `step`
+  /// Particles from one to those that the rows after its own will name for the first time: their records may be
+  /// fetched.
+  std::size_t look_ahead = 0;
+  int row_multiple = 1;  ///< a power of two, up to `step`
 
   std::size_t size() const { return places.size(); }
   std::size_t n_bytes() const;
   /// Entries that a buffer for any row needs.
   std::size_t room() const { return longest + static_cast<std::size_t>(row_multiple) + step; }
 
-  /// The row of particle `i`, written to `buffer`, which has room for it.
+  /// The row of particle `i`, written to `buffer`, which has room for it: each neighbour times `stride`, which is where
+  /// it begins in an array of so many numbers a particle. Beyond 2^31 these wrap: take them as unsigned.
+  template <std::uint32_t stride = 1>
   Row read(std::size_t i, std::int32_t* buffer) const {
     const Block& block = blocks[places[i].cell / cells_per_block];
     const std::size_t cell = places[i].cell % cells_per_block;
@@ -59,15 +65,17 @@ struct NeighbourLists {
     std::int32_t* end = buffer;
     for (std::uint32_t run = first_run; run < end_run; ++run, ++count) {
       // A whole step each time, most often the only one: what is beyond a run's last the next run overwrites.
-      spell_out(block.run_begin[run], place, end);
+      spell_out<stride>(block.run_begin[run], place, end);
       for (std::size_t done = step; done < *count; done += step)
-        spell_out(block.run_begin[run], place + done, end + done);
+        spell_out<stride>(block.run_begin[run], place + done, end + done);
       end += *count;
       place += *count;
     }
     const auto n = static_cast<std::size_t>(end - buffer);
-    for (std::size_t k = 0; k < n && !names.empty(); ++k) buffer[k] = names[static_cast<std::size_t>(buffer[k])];
-    std::fill_n(end, step, static_cast<std::int32_t>(i));  // no fewer than are wanted, and of a known number
+    for (std::size_t k = 0; k < n && !names.empty(); ++k)
+      buffer[k] = times<stride>(names[static_cast<std::uint32_t>(buffer[k]) / stride]);
+    std::fill_n(end, step,
+                times<stride>(static_cast<std::int32_t>(i)));  // no fewer than are wanted, and of a known number
     const auto multiple = static_cast<std::size_t>(row_multiple);
     const std::size_t n_padded = (n + multiple - 1) & ~(multiple - 1);
     return {{buffer, n}, {buffer, n_padded}};
@@ -77,13 +85,22 @@ struct NeighbourLists {
   std::vector<std::int32_t> row(std::size_t i) const;
 
  private:
+  template <std::uint32_t stride>
+  static std::int32_t times(std::int32_t place) {
+    return static_cast<std::int32_t>(stride * static_cast<std::uint32_t>(place));
+  }
+
   /// By hand: the compiler takes four scalar instructions a place.
+  template <std::uint32_t stride>
   static void spell_out(std::int32_t begin, const std::uint8_t* place, std::int32_t* out) {
-    static_assert(step == 16);
-    const __m256i first = _mm256_set1_epi32(begin);
+    static_assert(step == 16 && std::has_single_bit(stride));
+    constexpr int shift = std::countr_zero(stride);
+    const __m256i first = _mm256_set1_epi32(times<stride>(begin));
     const __m128i low = _mm_loadu_si128(reinterpret_cast<const __m128i*>(place)), high = _mm_srli_si128(low, 8);
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out), _mm256_add_epi32(first, _mm256_cvtepu8_epi32(low)));
-    _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + 8), _mm256_add_epi32(first, _mm256_cvtepu8_epi32(high)));
+    const __m256i after[2] = {_mm256_cvtepu8_epi32(low), _mm256_cvtepu8_epi32(high)};
+    for (int half = 0; half < 2; ++half)
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + 8 * half),
+                          _mm256_add_epi32(first, _mm256_slli_epi32(after[half], shift)));
   }
 };
 

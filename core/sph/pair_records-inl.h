@@ -10,6 +10,7 @@
 #include "core/sph/pair_sums.h"
 #include "core/sph/particles.h"
 
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 #include <algorithm>
@@ -33,12 +34,21 @@ HWY_INLINE void transpose_blocks(Simd<float>& row0, Simd<float>& row1, Simd<floa
   row3 = hn::BitCast(d, hn::InterleaveUpper(wide, pairs01_high, pairs23_high));
 }
 
-/// Fields [first, first + 4) of the records at `at`, one a lane.
-template <int n_lanes>
-HWY_INLINE void load_four_fields(const float* const (&at)[n_lanes], std::ptrdiff_t first, Simd<float>* fields) {
+/// What a particle has in an array of `stride` numbers for each, where its record begins at `begin` (read_row).
+template <int stride, typename Real>
+HWY_INLINE const Real* numbers_of(const Real* array, std::int32_t begin) {
+  return array + static_cast<std::uint32_t>(begin) / (pair_record_size / stride);
+}
+
+/// Four numbers of each of a vector of particles, from `array` on, whose records begin at `begins`: field by field.
+template <int stride>
+HWY_INLINE void load_four_fields(const float* array, const std::int32_t* begins, Simd<float>* fields) {
+  constexpr int n_lanes = lanes<float>;
   const Tag<float> d;
   const hn::Half<Tag<float>> half;
-  const auto block = [&](int lane) HWY_ATTR { return hn::LoadU(hn::FixedTag<float, 4>(), at[lane] + first); };
+  const auto block = [&](int lane) HWY_ATTR {
+    return hn::LoadU(hn::FixedTag<float, 4>(), numbers_of<stride>(array, begins[lane]));
+  };
   Simd<float> rows[4];
   for (int k = 0; k < 4; ++k) {
     if constexpr (n_lanes == 16)
@@ -72,11 +82,14 @@ HWY_INLINE Simd<float> odd_blocks(Simd<float> low, Simd<float> high) {
 #endif
 }
 
-/// Fields [first, first + 8): half the loads of twice four.
-template <int n_lanes>
-HWY_INLINE void load_eight_fields(const float* const (&at)[n_lanes], std::ptrdiff_t first, Simd<float>* fields) {
+/// Eight: half the loads of twice four.
+template <int stride>
+HWY_INLINE void load_eight_fields(const float* array, const std::int32_t* begins, Simd<float>* fields) {
+  constexpr int n_lanes = lanes<float>;
   const Tag<float> d;
-  const auto record = [&](int lane) HWY_ATTR { return hn::LoadU(hn::FixedTag<float, 8>(), at[lane] + first); };
+  const auto record = [&](int lane) HWY_ATTR {
+    return hn::LoadU(hn::FixedTag<float, 8>(), numbers_of<stride>(array, begins[lane]));
+  };
   Simd<float> low[4], high[4];  // the first half of the neighbours, and the second
   for (int k = 0; k < 4; ++k) {
     if constexpr (n_lanes == 16) {
@@ -96,28 +109,26 @@ HWY_INLINE void load_eight_fields(const float* const (&at)[n_lanes], std::ptrdif
   }
 }
 
-/// Fields [first, first + n) of the records, of `stride` numbers, of one vector of neighbours: fields[f] holds field
-/// first + f of each.
+/// Fields [first, first + n) of a vector of particles in an array of `stride` numbers for each: fields[f] holds field
+/// first + f of those whose records begin at `begins`.
 template <int stride, int n>
-HWY_INLINE void load_fields(const float* records, std::ptrdiff_t first, const std::int32_t* index,
+HWY_INLINE void load_fields(const float* array, std::ptrdiff_t first, const std::int32_t* begins,
                             Simd<float> (&fields)[padded_fields(n)]) {
   constexpr int n_loaded = padded_fields(n);
-  const float* at[lanes<float>];
-  for (int lane = 0; lane < lanes<float>; ++lane)
-    at[lane] = records + static_cast<std::ptrdiff_t>(index[lane]) * stride;
-  for (int f = 0; f + 8 <= n_loaded; f += 8) load_eight_fields(at, first + f, fields + f);
-  if constexpr (n_loaded % 8 != 0) load_four_fields(at, first + n_loaded - 4, fields + n_loaded - 4);
+  for (int f = 0; f + 8 <= n_loaded; f += 8) load_eight_fields<stride>(array + first + f, begins, fields + f);
+  if constexpr (n_loaded % 8 != 0)
+    load_four_fields<stride>(array + first + n_loaded - 4, begins, fields + n_loaded - 4);
 }
 
 /// Double precision serves studies, not speed: plain gathers.
 template <int stride, int n>
-HWY_INLINE void load_fields(const double* records, std::ptrdiff_t first, const std::int32_t* index,
+HWY_INLINE void load_fields(const double* array, std::ptrdiff_t first, const std::int32_t* begins,
                             Simd<double> (&fields)[padded_fields(n)]) {
   const Tag<double> d;
   const Tag<std::int64_t> di;
-  const auto indices = hn::PromoteTo(di, hn::LoadU(hn::Rebind<std::int32_t, decltype(di)>(), index));
-  const auto offsets = hn::Mul(indices, hn::Set(di, std::int64_t{stride}));
-  for (int f = 0; f < n; ++f) fields[f] = hn::GatherIndex(d, records + first + f, offsets);
+  alignas(32) std::int64_t offsets[lanes<double>];
+  for (int lane = 0; lane < lanes<double>; ++lane) offsets[lane] = numbers_of<stride>(array, begins[lane]) - array;
+  for (int f = 0; f < n; ++f) fields[f] = hn::GatherIndex(d, array + first + f, hn::Load(di, offsets));
 }
 
 /// One field of a vector of neighbours.
@@ -241,6 +252,15 @@ HWY_INLINE void sum_row_in_groups(const NeighbourLists::Row& row, Real* total, c
     int at = 0;
     ((sum_row<Group::n>(row, total + at, group.add), at += Group::n), ...);
   }
+}
+
+/// Particles whose records the passes over pairs will soon read for the first time come to the caches meanwhile: those
+/// of rods do not lie in the order in which the machine would fetch them by itself.
+template <bool with_stress, int Dim, typename Real>
+HWY_INLINE void fetch_ahead(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, std::size_t i) {
+  const std::size_t ahead = std::min(i + lists.look_ahead, lists.size() - 1);
+  hwy::Prefetch(fields.record(ahead));
+  if constexpr (with_stress) hwy::Prefetch(fields.stress(ahead));
 }
 
 /// What every pair needs of its neighbours.

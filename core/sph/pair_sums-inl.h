@@ -30,7 +30,7 @@ void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lis
   std::vector<std::int32_t> buffer(lists.room());
   for (std::size_t i = begin; i < end; ++i) {
     const Real* record_i = fields.record(i);
-    const NeighbourLists::Row row = lists.read(i, buffer.data());
+    const NeighbourLists::Row row = fields.read_row(lists, i, buffer.data());
     const std::int32_t* row_end = row.neighbours.data() + row.neighbours.size();
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
       const Neighbours<Dim, Real> pair(record_i, fields.records.data(), index);

@@ -5,6 +5,7 @@
 // Symbols: x_ij = x_i - x_j, v_ij = v_i - v_j, V_j = m_j/rho_j, W the kernel, F = (dW/dr)/r, so grad_w_ij = F x_ij.
 // Each pair is evaluated from both of its particles (no scattered writes), so results do not depend on threads.
 
+#include "core/error.h"
 #include "core/sph/kernel.h"
 #include "core/sph/neighbours.h"
 
@@ -48,6 +49,9 @@ constexpr int padded_fields(int n_fields) {
   return (n_fields + 3) / 4 * 4;
 }
 
+/// Numbers in a record of the pair loops: a cache line in single precision.
+inline constexpr int pair_record_size = 16;
+
 /// The particles as the pair loops read them, in the order of the neighbour lists: a record each and, where there is a
 /// stress, a record of it, both of one cache line (in single precision). They lie apart, as the first pass reads the
 /// first alone. Positions are relative to an origin near the particles, so that Real may be float. Fields of unused
@@ -66,7 +70,7 @@ struct PairFields {
   /// Where sight differs, viscosity at rest eta [Pa s]: in the first pass, and in the second, which reads no heat,
   /// followed by 1/eta.
   static constexpr int rest_viscosity_at = 14, rest_viscosity_of_forces_at = 12;
-  static constexpr int record_size = 16;
+  static constexpr int record_size = pair_record_size;
 
   /// A record of stress begins with S L row-major [Pa]. With hourglass control, then eta_h/2 [Pa s] and eta_h E/2 [Pa],
   /// E the symmetric velocity gradient, packed, its off-diagonal entries doubled.
@@ -83,6 +87,7 @@ struct PairFields {
 
   /// Makes room for `n` particles.
   void resize(std::size_t n, bool with_stress) {
+    CHECK_LE(n, (std::size_t{1} << 32) / record_size);  // rows of neighbours say where records begin
     records.resize((with_stress ? 2 : 1) * n * record_size);
     stresses_at = static_cast<std::ptrdiff_t>(n * record_size);
   }
@@ -90,6 +95,11 @@ struct PairFields {
   const Real* record(std::size_t i) const { return records.data() + i * record_size; }
   Real* stress(std::size_t i) { return record(i) + stresses_at; }
   const Real* stress(std::size_t i) const { return record(i) + stresses_at; }
+
+  /// The row of particle `i`: where the records of its neighbours begin.
+  NeighbourLists::Row read_row(const NeighbourLists& lists, std::size_t i, std::int32_t* buffer) const {
+    return lists.read<record_size>(i, buffer);
+  }
 };
 
 /// Sums of the first pass for one particle.

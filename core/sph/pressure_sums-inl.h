@@ -36,7 +36,7 @@ void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const Neighbour
       add_position_moment<Dim, Real>(pair, volume_f, sum + Dim);
     };
     Real total[Dim + n_symmetric<Dim>];
-    sum_row<Dim + n_symmetric<Dim>>(lists.read(i, buffer.data()), total, add_pairs);
+    sum_row<Dim + n_symmetric<Dim>>(fields.read_row(lists, i, buffer.data()), total, add_pairs);
     std::copy_n(total, Dim, sums[i - begin].gradient.begin());
     std::copy_n(total + Dim, n_symmetric<Dim>, sums[i - begin].moment.begin());
   }
@@ -68,7 +68,7 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
       sum[0] = hn::NegMulAdd(weight, unexplained, sum[0]);
     };
     Real total[1];
-    sum_row<1>(lists.read(i, buffer.data()), total, add_pairs);
+    sum_row<1>(fields.read_row(lists, i, buffer.data()), total, add_pairs);
     sums[i - begin] = 2 * total[0];
   }
 }

@@ -165,7 +165,8 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
   for (std::size_t i = begin; i < end; ++i) {
     const Real* record_i = fields.record(i);
     [[maybe_unused]] auto thinnest = hn::Set(d, record_i[Fields::rest_viscosity_at]);
-    const NeighbourLists::Row row = lists.read(i, buffer.data());
+    fetch_ahead<false>(fields, lists, i);
+    const NeighbourLists::Row row = fields.read_row(lists, i, buffer.data());
     for (std::size_t k = 0; k < row.neighbours.size(); k += lanes<Real>)
       weigh_pairs<PairKernel, Dim, Real, with_xsph>(kernel, record_i, records, row.padded.data() + k,
                                                     weighed[k / lanes<Real>]);
