@@ -12,10 +12,14 @@
 #include <immintrin.h>
 #include <limits>
 #include <numeric>
+#include <utility>
 
 namespace smelt {
 
 namespace {
+
+/// Of a distance's square, by what rounds it off.
+constexpr double search_excess = 2e-6;
 
 constexpr int bits_per_axis = 21;
 constexpr std::int64_t max_cells = std::int64_t{1} << bits_per_axis;
@@ -66,6 +70,7 @@ class CellTable {
     std::size_t capacity = 16;
     while (capacity < 2 * cells_.size()) capacity *= 2;
     mask_ = capacity - 1;
+    shift_ = 64 - std::countr_zero(capacity);
     slots_.assign(capacity, -1);
     for (std::size_t c = 0; c < cells_.size(); ++c) {
       std::size_t slot = hash(cells_[c].key);
@@ -83,11 +88,13 @@ class CellTable {
   }
 
  private:
-  std::size_t hash(std::uint64_t key) const { return ((key * 0x9e3779b97f4a7c15ULL) >> 20) & mask_; }
+  /// The highest bits of a product are those that every bit of the key takes part in.
+  std::size_t hash(std::uint64_t key) const { return (key * 0x9e3779b97f4a7c15ULL) >> shift_; }
 
   std::vector<Cell> cells_;
   std::vector<std::int32_t> slots_;
   std::size_t mask_ = 0;
+  int shift_ = 0;
 };
 
 /// Particles [begin, end) that lie next to one another.
@@ -147,7 +154,7 @@ std::uint64_t rank_cell(std::uint64_t key) {
 /// Sets `target` to `source` without keeping the room of the most it ever held: over many searches every block would
 /// come to hold that. Whole kilobytes, so that what one block gives back another can take.
 template <typename T>
-void replace(std::vector<T>& target, const std::vector<T>& source) {
+void replace(std::vector<T>& target, std::span<const T> source) {
   constexpr std::size_t step = 1024 / sizeof(T);
   const std::size_t room = (source.size() + step - 1) / step * step;
   if (target.capacity() != room) {
@@ -158,89 +165,121 @@ void replace(std::vector<T>& target, const std::vector<T>& source) {
 }
 
 /// What the particles of one cell may have in reach: positions run by run, each run padded to whole vectors with what
-/// nothing reaches.
+/// nothing reaches. In single precision, in units of the radius, from the first of the cell's own particles.
 template <int Dim>
 struct Candidates {
   static constexpr std::size_t width = 8;  ///< of a vector: their places are compressed as one number
-  static constexpr double nowhere = std::numeric_limits<double>::infinity();
+  static constexpr float nowhere = std::numeric_limits<float>::infinity();
 
-  std::array<std::vector<double>, Dim> x;
-  std::vector<std::size_t> run_at;  ///< where each run begins
+  Vec<Dim> origin;
+  double inverse_radius = 1.0;
+  std::array<std::vector<float>, Dim> x;
+  std::vector<std::uint64_t> places;      ///< of a vector in their run, a byte each
+  std::vector<std::size_t> first_vector;  ///< of each run, and where the last ends
 
-  void gather(std::span<const Vec<Dim>> position, const std::vector<Run>& runs) {
-    run_at.clear();
-    std::size_t n = 0;
+  float coordinate(const Vec<Dim>& position, int axis) const {
+    return static_cast<float>((position[axis] - origin[axis]) * inverse_radius);
+  }
+
+  void gather(std::span<const Vec<Dim>> position, const Vec<Dim>& from, double radius, const std::vector<Run>& runs) {
+    constexpr std::uint64_t first_places = 0x0706050403020100, ones = 0x0101010101010101;
+    origin = from;
+    inverse_radius = 1.0 / radius;
+    places.clear();
+    first_vector.clear();
     for (const Run& run : runs) {
-      run_at.push_back(n);
-      n += (static_cast<std::size_t>(run.end - run.begin) + width - 1) / width * width;
+      first_vector.push_back(places.size());
+      const auto n = static_cast<std::size_t>(run.end - run.begin);
+      for (std::size_t k = 0; k < n; k += width) places.push_back(first_places + k * ones);
     }
-    for (int axis = 0; axis < Dim; ++axis) {
-      x[axis].assign(n, nowhere);
-      for (std::size_t r = 0; r < runs.size(); ++r) {
-        double* out = x[axis].data() + run_at[r];
-        for (std::int32_t j = runs[r].begin; j < runs[r].end; ++j) *out++ = position[j][axis];
-      }
+    first_vector.push_back(places.size());
+    for (auto& coordinates : x) coordinates.resize(std::max(coordinates.size(), width * places.size()));
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+      std::size_t at = width * first_vector[r];
+      for (std::int32_t j = runs[r].begin; j < runs[r].end; ++j, ++at)
+#pragma GCC unroll 3
+        for (int axis = 0; axis < Dim; ++axis) x[axis][at] = coordinate(position[j], axis);
+      for (; at < width * first_vector[r + 1]; ++at) x[0][at] = nowhere;
     }
   }
 };
 
 /// Bit k says whether the k-th of Candidates::width points from `x` on lies nearer than sqrt(radius2) to `from`.
 template <int Dim>
-std::uint64_t within(const std::array<const double*, Dim>& x, std::size_t first, const __m256d (&from)[Dim],
-                     __m256d radius2) {
-  std::uint64_t mask = 0;
-#pragma GCC unroll 2
-  for (std::size_t half = 0; half < 2; ++half) {
-    __m256d r2 = _mm256_setzero_pd();
+std::uint64_t within(const std::array<const float*, Dim>& x, std::size_t first, const __m256 (&from)[Dim],
+                     __m256 radius2) {
+  __m256 r2 = _mm256_setzero_ps();
 #pragma GCC unroll 3
-    for (int axis = 0; axis < Dim; ++axis) {
-      const __m256d d = _mm256_sub_pd(_mm256_loadu_pd(x[axis] + first + 4 * half), from[axis]);
-      r2 = _mm256_add_pd(_mm256_mul_pd(d, d), r2);
-    }
-    const int near = _mm256_movemask_pd(_mm256_cmp_pd(r2, radius2, _CMP_LT_OQ));
-    mask |= static_cast<std::uint64_t>(near) << (4 * half);
+  for (int axis = 0; axis < Dim; ++axis) {
+    const __m256 d = _mm256_sub_ps(_mm256_loadu_ps(x[axis] + first), from[axis]);
+    r2 = _mm256_add_ps(_mm256_mul_ps(d, d), r2);
   }
-  return mask;
+  return static_cast<std::uint64_t>(_mm256_movemask_ps(_mm256_cmp_ps(r2, radius2, _CMP_LT_OQ)));
 }
+
+/// Rows one after another, with room for more.
+class RowBytes {
+ public:
+  void clear() { size_ = 0; }
+  std::span<const std::uint8_t> written() const { return {bytes_.data(), size_}; }
+  std::size_t size() const { return size_; }
+  /// Where up to `n` bytes may be written.
+  std::uint8_t* make_room(std::size_t n) {
+    if (bytes_.size() < size_ + n) bytes_.resize(2 * (size_ + n));
+    return bytes_.data() + size_;
+  }
+  /// Takes in those of them that precede `end`.
+  void end_at(const std::uint8_t* end) { size_ = static_cast<std::size_t>(end - bytes_.data()); }
+
+ private:
+  std::vector<std::uint8_t> bytes_;
+  std::size_t size_ = 0;
+};
 
 /// Appends the row of particle `i` to `bytes`; returns how many neighbours it has.
 template <int Dim>
-std::size_t append_row(const Candidates<Dim>& candidates, const Vec<Dim>& position, double radius2,
-                       const std::vector<Run>& runs, std::int32_t i, std::vector<std::uint8_t>& bytes) {
+std::size_t append_row(Candidates<Dim>& candidates, const Vec<Dim>& position, float radius2,
+                       const std::vector<Run>& runs, std::int32_t i, RowBytes& bytes) {
   constexpr std::size_t width = Candidates<Dim>::width;
-  constexpr std::uint64_t first_places = 0x0706050403020100, ones = 0x0101010101010101;
-  const std::size_t start = bytes.size();
-  bytes.resize(start + runs.size() + candidates.x[0].size() + width);
-  std::uint8_t* count = bytes.data() + start;
-  std::uint8_t* const first = count + runs.size();
+  constexpr std::uint64_t ones = 0x0101010101010101;
+  const std::size_t n_vectors = candidates.places.size();
+  thread_local std::vector<std::uint8_t*> end_of;  // what each vector wrote
+  end_of.resize(n_vectors);
+  std::uint8_t* const counts = bytes.make_room(runs.size() + width * (n_vectors + 1));
+  std::uint8_t* const first = counts + runs.size();
   std::uint8_t* place = first;
-  // Of its own: bytes that are written might be anything, even these.
-  const __m256d radius2s = _mm256_set1_pd(radius2);
-  std::array<const double*, Dim> x;
-  __m256d from[Dim];
+  const __m256 radius2s = _mm256_set1_ps(radius2);
+  std::array<const float*, Dim> x;
+  __m256 from[Dim];
   for (int axis = 0; axis < Dim; ++axis) {
     x[axis] = candidates.x[axis].data();
-    from[axis] = _mm256_set1_pd(position[axis]);
+    from[axis] = _mm256_set1_ps(candidates.coordinate(position, axis));
   }
+  // Out of its own reach for a while.
+  std::size_t own_run = 0;
+  while (i >= runs[own_run].end) ++own_run;
+  float& own_x =
+      candidates.x[0][width * candidates.first_vector[own_run] + static_cast<std::size_t>(i - runs[own_run].begin)];
+  const float kept_x = std::exchange(own_x, Candidates<Dim>::nowhere);
+  // All runs in one loop: where one of them ends could not be foretold.
+  const std::uint64_t* const places = candidates.places.data();
+  std::uint8_t** const ends = end_of.data();
+  for (std::size_t v = 0; v < n_vectors; ++v) {
+    const std::uint64_t near = within<Dim>(x, width * v, from, radius2s);
+    // A whole vector of places is written, the near ones in front.
+    const std::uint64_t near_places = _pext_u64(places[v], _pdep_u64(near, ones) * 0xFF);
+    std::memcpy(place, &near_places, width);
+    ends[v] = place += std::popcount(near);
+  }
+  own_x = kept_x;
+  const std::uint8_t* before = first;
   for (std::size_t r = 0; r < runs.size(); ++r) {
-    const std::uint8_t* before = place;
-    const std::size_t run_at = candidates.run_at[r];
-    const auto n = static_cast<std::size_t>(runs[r].end - runs[r].begin);
-    const std::int64_t self = i - std::int64_t{runs[r].begin};
-    for (std::size_t k = 0; k < n; k += width) {
-      std::uint64_t near = within<Dim>(x, run_at + k, from, radius2s);
-      const std::int64_t self_bit = self - static_cast<std::int64_t>(k);
-      if (self_bit >= 0 && self_bit < static_cast<std::int64_t>(width)) near &= ~(std::uint64_t{1} << self_bit);
-      // A whole vector of places is written, the near ones in front.
-      const std::uint64_t places = _pext_u64(first_places + k * ones, _pdep_u64(near, ones) * 0xFF);
-      std::memcpy(place, &places, width);
-      place += std::popcount(near);
-    }
-    *count++ = static_cast<std::uint8_t>(place - before);
+    const std::uint8_t* const end = ends[candidates.first_vector[r + 1] - 1];
+    counts[r] = static_cast<std::uint8_t>(end - before);
+    before = end;
   }
-  const auto n = static_cast<std::size_t>(place - first);
-  bytes.resize(start + runs.size() + n);
-  return n;
+  bytes.end_at(place);
+  return static_cast<std::size_t>(place - first);
 }
 
 }  // namespace
@@ -282,6 +321,8 @@ void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, do
   CHECK(std::has_single_bit(static_cast<unsigned>(row_multiple)) &&
         static_cast<std::size_t>(row_multiple) <= NeighbourLists::step);
   const CellTable table(position, make_cell_frame<Dim>(position, cell_size));
+  // In radii. No coordinate of up to two cells is rounded by more: what lies within the radius must not be lost.
+  const auto radius2 = static_cast<float>(1.0 + search_excess * cell_size / radius);
   const auto& cells = table.cells();
   constexpr std::size_t cells_per_block = NeighbourLists::cells_per_block;
   lists.row_multiple = row_multiple;
@@ -294,7 +335,7 @@ void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, do
       [&](std::size_t b, std::size_t) {
         NeighbourLists::Block& block = lists.blocks[b];
         thread_local std::vector<std::int32_t> run_begin;
-        thread_local std::vector<std::uint8_t> bytes;
+        thread_local RowBytes bytes;
         thread_local Candidates<Dim> candidates;
         run_begin.clear();
         bytes.clear();
@@ -304,18 +345,17 @@ void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, do
           if (c >= cells.size()) continue;
           const std::vector<Run> runs = split_runs(find_runs<Dim>(table, cells[c].key));
           for (const Run& run : runs) run_begin.push_back(run.begin);
-          candidates.gather(position, runs);
+          candidates.gather(position, position[cells[c].begin], radius, runs);
           for (std::int32_t i = cells[c].begin; i < cells[c].end; ++i) {
             CHECK_LE(bytes.size(), std::numeric_limits<std::uint32_t>::max());
             lists.places[i] = {static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(bytes.size())};
-            longest[b] =
-                std::max(longest[b], append_row<Dim>(candidates, position[i], radius * radius, runs, i, bytes));
+            longest[b] = std::max(longest[b], append_row<Dim>(candidates, position[i], radius2, runs, i, bytes));
           }
         }
         block.first_run.back() = static_cast<std::uint32_t>(run_begin.size());
-        bytes.resize(bytes.size() + NeighbourLists::step);
-        replace(block.run_begin, run_begin);
-        replace(block.bytes, bytes);
+        bytes.end_at(std::fill_n(bytes.make_room(NeighbourLists::step), NeighbourLists::step, std::uint8_t{0}));
+        replace<std::int32_t>(block.run_begin, run_begin);
+        replace(block.bytes, bytes.written());
       },
       1);
   // In a rod, two cells further along it.

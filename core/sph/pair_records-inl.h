@@ -37,7 +37,8 @@ HWY_INLINE void transpose_blocks(Simd<float>& row0, Simd<float>& row1, Simd<floa
 /// What a particle has in an array of `stride` numbers for each, where its record begins at `begin` (read_row).
 template <int stride, typename Real>
 HWY_INLINE const Real* numbers_of(const Real* array, std::int32_t begin) {
-  return array + static_cast<std::uint32_t>(begin) / (pair_record_size / stride);
+  const std::size_t at = static_cast<std::uint32_t>(begin);
+  return array + (stride == pair_record_size ? at : at / pair_record_size * stride);
 }
 
 /// Four numbers of each of a vector of particles, from `array` on, whose records begin at `begins`: field by field.

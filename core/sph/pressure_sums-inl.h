@@ -18,12 +18,13 @@ namespace HWY_NAMESPACE {
 
 template <typename PairKernel, int Dim, typename Real>
 void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, double h,
-                            std::size_t begin, std::size_t end, PressureGradientSums<Dim, Real>* sums) {
+                            std::span<const std::int32_t> particles, PressureGradientSums<Dim, Real>* sums) {
   const Tag<Real> d;
   const PairKernel kernel(h);
   using Fields = PairFields<Dim, Real>;
   std::vector<std::int32_t> buffer(lists.room());
-  for (std::size_t i = begin; i < end; ++i) {
+  for (std::size_t k = 0; k < particles.size(); ++k) {
+    const auto i = static_cast<std::size_t>(particles[k]);
     const Real* record_i = fields.record(i);
     // The gradient is first, then the moment.
     const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
@@ -37,8 +38,8 @@ void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const Neighbour
     };
     Real total[Dim + n_symmetric<Dim>];
     sum_row<Dim + n_symmetric<Dim>>(fields.read_row(lists, i, buffer.data()), total, add_pairs);
-    std::copy_n(total, Dim, sums[i - begin].gradient.begin());
-    std::copy_n(total + Dim, n_symmetric<Dim>, sums[i - begin].moment.begin());
+    std::copy_n(total, Dim, sums[k].gradient.begin());
+    std::copy_n(total + Dim, n_symmetric<Dim>, sums[k].moment.begin());
   }
 }
 
@@ -75,10 +76,10 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
 
 #define SMELT_INSTANTIATE(Dim, Real, suffix)                                                                       \
   inline void pressure_gradient_sums_##suffix(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,    \
-                                              KernelType type, double h, std::size_t begin, std::size_t end,       \
+                                              KernelType type, double h, std::span<const std::int32_t> particles,  \
                                               PressureGradientSums<Dim, Real>* sums) {                             \
     with_kernel<Dim, Real>(type, [&](auto kernel) HWY_ATTR {                                                       \
-      pressure_gradient_sums<typename decltype(kernel)::type, Dim, Real>(fields, lists, h, begin, end, sums);      \
+      pressure_gradient_sums<typename decltype(kernel)::type, Dim, Real>(fields, lists, h, particles, sums);       \
     });                                                                                                            \
   }                                                                                                                \
   inline void pressure_diffusion_sums_##suffix(                                                                    \

@@ -4,6 +4,9 @@
 
 #include "core/sph/pair_sums.h"
 
+#include <cstdint>
+#include <span>
+
 namespace smelt {
 
 /// The pressure's gradient before correction, and what corrects it.
@@ -13,10 +16,10 @@ struct PressureGradientSums {
   std::array<Real, Dim*(Dim + 1) / 2> moment;  ///< sum V_j (x_j - x_i) (x) grad_w_ij, packed
 };
 
-/// For particles [begin, end), from motion and pressure in `fields`. `sums` has one entry for each of them.
+/// For the particles named, from motion and pressure in `fields`. `sums` has one entry for each of them.
 template <int Dim, typename Real>
 void compute_pressure_gradient_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists, KernelType kernel,
-                                    double smoothing_length, std::size_t begin, std::size_t end,
+                                    double smoothing_length, std::span<const std::int32_t> particles,
                                     PressureGradientSums<Dim, Real>* sums);
 
 /// Numbers per particle in the array of gradients below: g [Pa/m] and p [Pa].

@@ -93,6 +93,11 @@ void Solver<Dim, Real>::resize_derived() {
   if (terms_.pair.xsph) transport_.resize(n, RealVec::Zero());
   if (!colliders_.empty()) clearance_.resize(n, 0.0F);
   if (terms_.exchange) free_surface_area_.resize(n, 0.0);
+  // Of one material, without heat, all particles are alike.
+  if (!terms_.pair.stress || !(terms_.pair.has_heat() || materials_.size() > 1)) return;
+  const std::size_t before = rest_viscosity_.size();
+  rest_viscosity_.resize(n);
+  for (std::size_t i = before; i < n; ++i) keep_rest_viscosity(i, flow_curve_of(i));
 }
 
 // ------------------------------------------------------------------------------------------------------- the algorithm
@@ -179,6 +184,7 @@ void Solver<Dim, Real>::search_neighbours(double skin) {
   for_each_array(particles_, reorder);
   reorder(transport_);
   reorder(heat_balance_);
+  reorder(rest_viscosity_);
   if (terms_.periodic) std::fill(clearance_.begin(), clearance_.end(), 0.0F);  // of places across the box
   reorder(clearance_);
   reorder(free_surface_area_);

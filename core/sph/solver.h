@@ -171,7 +171,9 @@ class Solver {
   double least_skin() const { return parameters_.skin.value_or(0.08); }
   void search_neighbours(double skin);
   void pack_heat(std::size_t i, double largest_conductivity, Real* record) const;
-  void pack_sight();
+  FlowCurve flow_curve_of(std::size_t i) const;
+  void keep_rest_viscosity(std::size_t i, const FlowCurve& curve);
+  bool sight_differs() const;
   void pack_motion(bool with_transport);
   void pack_gas(std::size_t i, double dt);
   void copy_records_to_images();
@@ -183,7 +185,7 @@ class Solver {
   void add_density_diffusion(std::size_t begin, std::size_t end, RateSums<Dim, Real>* rates) const;
   void add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<Dim, Real>& rate, SightedSums<Dim, Real>& sighted) const;
   void collect_stress(std::size_t i, const Mat<Dim>& correction, RateSums<Dim, Real>& rate,
-                      const SightedSums<Dim, Real>& sighted, StressBlock<Dim>& stresses) const;
+                      const SightedSums<Dim, Real>& sighted, StressBlock<Dim>& stresses);
   void advance_stresses(std::size_t first, double dt, StressBlock<Dim>& stresses);
   void apply_wall_forces(std::size_t slot);
   void sum_body_loads();
@@ -251,8 +253,9 @@ class Solver {
   std::vector<double> power_density_;  ///< of each heat source of given power at weight 1, at this step [W/m^(Dim - 1)]
   HeatLedger heat_ledger_;
   std::vector<HeatBalance<Dim, Real>> heat_balance_;  ///< empty without heat
-  std::vector<RealVec> specific_force_;               ///< of pairs and walls [m/s^2]: gravity has more digits
-  std::vector<Real> energy_rate_;                     ///< of an ideal gas [W/kg], or empty
+  std::vector<Real> rest_viscosity_;     ///< [Pa s]; empty without stresses or where all particles are alike
+  std::vector<RealVec> specific_force_;  ///< of pairs and walls [m/s^2]: gravity has more digits
+  std::vector<Real> energy_rate_;        ///< of an ideal gas [W/kg], or empty
   std::vector<Vec<Dim>>
       body_forces_;  ///< on each obstacle by each wall neighbour [N]; like the next, empty without rigid bodies
   std::vector<std::vector<ParticleHit<Dim>>> body_hits_;  ///< of the last drift, in blocks of particles

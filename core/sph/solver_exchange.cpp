@@ -117,6 +117,7 @@ bool Solver<Dim, Real>::remove_outflow() {
   keep_only(specific_force_, keep);  // the first half of the next kick, and the drift after it
   keep_only(transport_, keep);
   keep_only(heat_balance_, keep);
+  keep_only(rest_viscosity_, keep);
   keep_only(clearance_, keep);
   keep_only(free_surface_area_, keep);
   if (walls_) walls_->keep(keep);

@@ -139,26 +139,27 @@ void Solver<Dim, Real>::evaluate_pressure_gradients() {
     packed[Dim] = fields_.record(i)[PairFields<Dim, Real>::pressure_at];
   };
   const bool everywhere = terms_.diffusion && terms_.pair.stress;
-  const auto evaluate = [&](std::size_t begin, std::size_t end) {
+  if (walls_) wall_gradient_.resize(walls_->neighbours().size());
+  if (terms_.diffusion) packed_gradient_.resize((n + images_.size()) * stride);
+  const auto evaluate = [&](std::span<const std::int32_t> particles) {
     std::array<PressureGradientSums<Dim, Real>, block_size> sums;
-    compute_pressure_gradient_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length, begin,
-                                              end, sums.data());
-    for (std::size_t i = begin; i < end; ++i) {
+    compute_pressure_gradient_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length,
+                                              particles, sums.data());
+    for (std::size_t k = 0; k < particles.size(); ++k) {
+      const auto i = static_cast<std::size_t>(particles[k]);
       const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr;
       const Vec<Dim> gradient =
-          compute_pressure_gradient<Dim, Real>(sums[i - begin], wall, particles_.density[i], parameters_.gravity);
+          compute_pressure_gradient<Dim, Real>(sums[k], wall, particles_.density[i], parameters_.gravity);
       if (wall) wall_gradient_[walls_->slot(*wall)] = gradient;
       if (everywhere) pack(i, gradient);
     }
   };
-  if (walls_) wall_gradient_.resize(walls_->neighbours().size());
-  if (terms_.diffusion) packed_gradient_.resize((n + images_.size()) * stride);
-  if (everywhere)
-    parallel_blocks(n, evaluate);
-  else if (walls_)
-    parallel_for_each(walls_->neighbours().size(), [&](std::size_t k) {
-      const auto i = static_cast<std::size_t>(walls_->neighbours()[k].particle);
-      evaluate(i, i + 1);
+  if (everywhere || walls_)
+    parallel_blocks(everywhere ? n : walls_->neighbours().size(), [&](std::size_t begin, std::size_t end) {
+      std::array<std::int32_t, block_size> particles;
+      for (std::size_t k = begin; k < end; ++k)
+        particles[k - begin] = everywhere ? static_cast<std::int32_t>(k) : walls_->neighbours()[k].particle;
+      evaluate({particles.data(), end - begin});
     });
   if (!terms_.diffusion) return;
   if (!everywhere)
@@ -195,7 +196,7 @@ void Solver<Dim, Real>::add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<
 /// Adds particle `i` to those whose stress advances together; `correction` is L where sight does not differ.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::collect_stress(std::size_t i, const Mat<Dim>& correction, RateSums<Dim, Real>& rate,
-                                       const SightedSums<Dim, Real>& sighted, StressBlock<Dim>& stresses) const {
+                                       const SightedSums<Dim, Real>& sighted, StressBlock<Dim>& stresses) {
   if (parameters_.corrected_divergence) {
     const Mat<Dim> bare = unpack_gradient<Dim, Real>(rate.velocity_moment);
     const double missed = (bare * correction).trace() - bare.trace();
@@ -214,10 +215,10 @@ void Solver<Dim, Real>::collect_stress(std::size_t i, const Mat<Dim>& correction
     }
   for (std::size_t m = 0; m < n_symmetric<Dim>; ++m) stresses.stress[m][k] = particles_.stress[i][m];
   stresses.viscosity[k] = particles_.viscosity[i];
-  const Material& m = material(i);
-  stresses.set_curve(k, m.heat ? flow_curve_at(m.rheology, melted_fraction_of(i), particles_.temperature[i])
-                               : flow_curve_at(m.rheology, 0.0));
-  stresses.modulus[k] = m.density * parameters_.shear_wave_speed * parameters_.shear_wave_speed;
+  const FlowCurve curve = flow_curve_of(i);
+  stresses.set_curve(k, curve);
+  if (!rest_viscosity_.empty()) keep_rest_viscosity(i, curve);
+  stresses.modulus[k] = material(i).density * parameters_.shear_wave_speed * parameters_.shear_wave_speed;
 }
 
 /// Advances the extra stress S of the collected particles, the first of which is `first`, and packs S L for the force

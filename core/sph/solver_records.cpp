@@ -22,30 +22,37 @@ void Solver<Dim, Real>::pack_heat(std::size_t i, double largest_conductivity, Re
   for (int a = 0; a < Dim; ++a) record[Fields::balance_at + a] = heat_balance_[i].lambda[a];
 }
 
-/// Viscosities at rest, and whether they differ by more than a stress sees across. A power law without yield stress has
-/// none: that at 1/s.
+/// Its flow curve now.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::pack_sight() {
-  using Fields = PairFields<Dim, Real>;
+FlowCurve Solver<Dim, Real>::flow_curve_of(std::size_t i) const {
+  const Material& m = material(i);
+  return m.heat ? flow_curve_at(m.rheology, melted_fraction_of(i), particles_.temperature[i])
+                : flow_curve_at(m.rheology, 0.0);
+}
+
+/// A power law without yield stress has none: that at 1/s.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::keep_rest_viscosity(std::size_t i, const FlowCurve& curve) {
+  constexpr double inviscid = 1e-30;
+  const double eta = std::isfinite(curve.rest_viscosity) ? curve.rest_viscosity : curve.consistency;
+  rest_viscosity_[i] = static_cast<Real>(std::max(inviscid, eta));
+}
+
+/// Whether viscosities at rest differ by more than a stress sees across.
+template <int Dim, typename Real>
+bool Solver<Dim, Real>::sight_differs() const {
   struct Range {
     double least, most;
   };
   const Range of_all = deterministic_reduce(
-      particles_.size(), Range{std::numeric_limits<double>::infinity(), 0.0},
+      rest_viscosity_.size(), Range{std::numeric_limits<double>::infinity(), 0.0},
       [&](std::size_t i) {
-        const Material& m = material(i);
-        const FlowCurve curve = m.heat ? flow_curve_at(m.rheology, melted_fraction_of(i), particles_.temperature[i])
-                                       : flow_curve_at(m.rheology, 0.0);
-        constexpr double inviscid = 1e-30;
-        const double eta =
-            std::max(inviscid, std::isfinite(curve.rest_viscosity) ? curve.rest_viscosity : curve.consistency);
-        fields_.record(i)[Fields::rest_viscosity_at] = static_cast<Real>(eta);
-        return Range{eta, eta};
+        return Range{rest_viscosity_[i], rest_viscosity_[i]};
       },
       [](const Range& a, const Range& b) {
         return Range{std::min(a.least, b.least), std::max(a.most, b.most)};
       });
-  terms_.pair.sight = of_all.most > sight_of_thinner * of_all.least;
+  return of_all.most > sight_of_thinner * of_all.least;
 }
 
 template <int Dim, typename Real>
@@ -66,10 +73,10 @@ void Solver<Dim, Real>::pack_motion(bool with_transport) {
     record[Fields::volume_at] = static_cast<Real>(mass(i) / particles_.density[i]);
     record[Fields::density_at] = static_cast<Real>(particles_.density[i]);
     if (terms_.pair.has_heat()) pack_heat(i, largest_conductivity, record);
+    if (!rest_viscosity_.empty()) record[Fields::rest_viscosity_at] = rest_viscosity_[i];
     if (with_pressure) record[Fields::pressure_at] = static_cast<Real>(pressure(i));
   });
-  // Of one material, without heat, all particles are alike.
-  if (terms_.pair.stress && (terms_.pair.has_heat() || materials_.size() > 1)) pack_sight();
+  terms_.pair.sight = sight_differs();
   copy_records_to_images();
 }
 
