@@ -53,7 +53,7 @@ Solver<Dim, Real>::Solver(const SolverParameters<Dim>& parameters, std::vector<M
   choose_terms();
   check_parameters();
   spacing_ = std::pow(parameters_.particle_volume, 1.0 / Dim);
-  check_period<Dim>(parameters_.period, list_reach(least_skin()));
+  check_period<Dim>(parameters_.period, list_reach(best_skin(0.0)));
   CHECK_EQ(particles_.temperature.size(), terms_.pair.has_heat() ? n : 0);
   CHECK_EQ(particles_.internal_energy.size(), terms_.gas ? n : 0);
   set_up_heat();
@@ -108,7 +108,7 @@ void Solver<Dim, Real>::prepare(double time) {
   if (terms_.pair.has_heat()) heat_balance_.assign(particles_.size(), {});
   std::fill(clearance_.begin(), clearance_.end(), 0.0F);
   if (walls_) walls_->reset(particles_.size());
-  search_neighbours(least_skin());
+  search_neighbours(best_skin(likely_way()));
   if (walls_) walls_->update(colliders_, particles_.position, particles_.velocity, 0.0);
   if (terms_.exchange) find_free_surface();
   heat_ledger_ = {};
@@ -159,12 +159,26 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
 
 // ---------------------------------------------------------------------------------------------------------- neighbours
 
-/// Pairs cost P (1 + skin/kappa)^3 a step, searches S/(skin h/2 way). With S about twice P, as measured on a melting
-/// heap, the sum is least about here. In a periodic box the reach is bounded by its size.
+/// Pairs cost P (1 + skin/kappa)^3 a step, searches S/(skin h/2 way). With S about P, as measured on a melting heap, the
+/// sum is least about here. In a periodic box the reach is bounded by its size.
 template <int Dim, typename Real>
 double Solver<Dim, Real>::best_skin(double way) const {
-  if (terms_.periodic || parameters_.skin) return least_skin();
-  return std::clamp(1.2 * std::sqrt(way / parameters_.smoothing_length), least_skin(), 0.35);
+  constexpr double in_a_box = 0.08, least = 0.02, most = 0.35;
+  if (parameters_.skin) return *parameters_.skin;
+  if (terms_.periodic) return in_a_box;
+  return std::clamp(1.2 * std::sqrt(way / parameters_.smoothing_length), least, most);
+}
+
+/// What the fastest particle may move by in a step against their mean [m], from the state alone.
+template <int Dim, typename Real>
+double Solver<Dim, Real>::likely_way() const {
+  const Vec<Dim> mean = mean_velocity();
+  const double fastest2 = deterministic_reduce(
+      particles_.size(), 0.0, [&](std::size_t i) { return (particles_.velocity[i] - mean).squaredNorm(); },
+      [](double a, double b) { return std::max(a, b); });
+  if (fastest2 == 0.0) return 0.0;
+  const double fastest = std::sqrt(fastest2);
+  return parameters_.courant * parameters_.smoothing_length * fastest / (fastest + fastest_sound());
 }
 
 template <int Dim, typename Real>
@@ -304,17 +318,21 @@ void Solver<Dim, Real>::move_particle(std::size_t i, double radius, double dt, V
 }
 
 template <int Dim, typename Real>
+Vec<Dim> Solver<Dim, Real>::mean_velocity() const {
+  const Vec<Dim> sum = deterministic_reduce(
+      particles_.size(), Vec<Dim>(Vec<Dim>::Zero()), [&](std::size_t i) { return particles_.velocity[i]; },
+      [](const Vec<Dim>& a, const Vec<Dim>& b) { return Vec<Dim>(a + b); });
+  return sum / static_cast<double>(particles_.size());
+}
+
+template <int Dim, typename Real>
 void Solver<Dim, Real>::drift(double dt) {
   const double radius = particle_radius<Dim>(parameters_.particle_volume);
   const std::size_t n_blocks = (particles_.size() + block_size - 1) / block_size;
   if (n_blocks == 0) return;
   // What all particles do together brings none nearer to another. In a periodic box it takes them out of it, though.
   Vec<Dim> together = Vec<Dim>::Zero();
-  if (!terms_.periodic)
-    together = dt / static_cast<double>(particles_.size()) *
-               deterministic_reduce(
-                   particles_.size(), together, [&](std::size_t i) { return particles_.velocity[i]; },
-                   [](const Vec<Dim>& a, const Vec<Dim>& b) { return Vec<Dim>(a + b); });
+  if (!terms_.periodic) together = dt * mean_velocity();
   std::vector<double> farthest(n_blocks, 0.0);
   body_hits_.resize(colliders_.has_bodies() ? n_blocks : 0);
   parallel_blocks(

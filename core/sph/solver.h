@@ -168,7 +168,7 @@ class Solver {
   }
   /// The skin that makes search and pairs together cheapest where particles move by `way` [m] a step.
   double best_skin(double way) const;
-  double least_skin() const { return parameters_.skin.value_or(0.08); }
+  double likely_way() const;
   void search_neighbours(double skin);
   void pack_heat(std::size_t i, double largest_conductivity, Real* record) const;
   FlowCurve flow_curve_of(std::size_t i) const;
@@ -201,6 +201,7 @@ class Solver {
   void pack_hourglass(std::size_t i, std::size_t k, const StressBlock<Dim>& stresses);
   void evaluate_forces();
   void kick(double dt);
+  Vec<Dim> mean_velocity() const;
   void drift(double dt);
   void move_particle(std::size_t i, double radius, double dt, Vec<Dim>& transport, std::vector<BodyHit<Dim>>* hits);
   Vec<Dim> drift_particle(std::size_t i, double radius, double dt, std::vector<ParticleHit<Dim>>* hits);
