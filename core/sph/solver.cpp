@@ -159,8 +159,8 @@ TimeStep Solver<Dim, Real>::step(double remaining, double time) {
 
 // ---------------------------------------------------------------------------------------------------------- neighbours
 
-/// Pairs cost P (1 + skin/kappa)^3 a step, searches S/(skin h/2 way). With S about P, as measured on a melting heap, the
-/// sum is least about here. In a periodic box the reach is bounded by its size.
+/// Pairs cost P (1 + skin/kappa)^3 a step, searches S/(skin h/2 way). With S about P, as measured on a melting heap,
+/// the sum is least about here. In a periodic box the reach is bounded by its size.
 template <int Dim, typename Real>
 double Solver<Dim, Real>::best_skin(double way) const {
   constexpr double in_a_box = 0.08, least = 0.02, most = 0.35;

@@ -76,6 +76,10 @@ struct SolverTerms {
   bool latent_heat = false;  ///< some material takes it up: particles carry their enthalpy
   bool exchange = false;     ///< heat passes through the free surface
   bool ledger = false;       ///< specific heats are known, and so energies
+
+  /// Density diffuses on what the pressure's corrected gradients do not explain, else on what the motion does not
+  /// (find_diffusion_gradients).
+  bool diffuses_along_gradients() const { return diffusion && pair.stress; }
 };
 
 /// What a step is made of, for timing.
@@ -85,8 +89,9 @@ enum class StepStage : std::uint8_t {
   search,       ///< for neighbours, where it was due
   wall_sums,    ///< which facets each particle sees, and the integrals over them
   records,      ///< what the passes over pairs read, packed twice
-  gradients,    ///< of the pressure, where walls or density diffusion ask for them
-  rates,        ///< the first pass over pairs, what walls add to it, and by it density, heat and stress
+  gradients,    ///< of the pressure, where density diffusion asks for them
+  rates,        ///< the first pass over pairs, what walls add to it, pressure gradients at these, and by it density,
+                ///< heat and stress
   forces,       ///< the second pass over pairs
   wall_forces,  ///< what walls add to it
   watch         ///< particles that come and go, and whether the state is sound
@@ -181,11 +186,16 @@ class Solver {
   void set_summed_densities(bool normalise);
   void advance_rates(double dt, double time);
   HeatLedger advance_block(std::size_t begin, std::size_t end, double dt, double time);
-  void evaluate_pressure_gradients();
+  HeatLedger advance_together(std::size_t first, RateSums<Dim, Real>* rates, const SightedSums<Dim, Real>* sighted,
+                              double dt, double time, StressBlock<Dim>& stresses);
+  void evaluate_pressure_gradients(std::span<const std::int32_t> particles);
+  void pack_gradient(std::size_t i, const Vec<Dim>& gradient);
+  void find_diffusion_gradients();
+  void add_walls(std::size_t begin, std::size_t end, RateSums<Dim, Real>* rates, SightedSums<Dim, Real>* sighted);
   void add_density_diffusion(std::size_t begin, std::size_t end, RateSums<Dim, Real>* rates) const;
   void add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<Dim, Real>& rate, SightedSums<Dim, Real>& sighted) const;
-  void collect_stress(std::size_t i, const Mat<Dim>& correction, RateSums<Dim, Real>& rate,
-                      const SightedSums<Dim, Real>& sighted, StressBlock<Dim>& stresses);
+  void collect_stress(std::size_t i, std::size_t k, RateSums<Dim, Real>& rate, const SightedSums<Dim, Real>& sighted,
+                      StressBlock<Dim>& stresses);
   void advance_stresses(std::size_t first, double dt, StressBlock<Dim>& stresses);
   void apply_wall_forces(std::size_t slot);
   void sum_body_loads();

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 
 namespace smelt {
 
@@ -79,7 +80,8 @@ void Solver<Dim, Real>::set_summed_densities(bool normalise) {
 template <int Dim, typename Real>
 void Solver<Dim, Real>::advance_rates(double dt, double time) {
   end_stage(StepStage::records);
-  if (walls_ || terms_.diffusion) evaluate_pressure_gradients();
+  if (walls_) wall_gradient_.resize(walls_->neighbours().size());
+  if (terms_.diffusion) find_diffusion_gradients();
   end_stage(StepStage::gradients);
   match_driven_densities();
   if (terms_.exchange && dt > 0.0) find_source_powers(time);
@@ -101,70 +103,86 @@ HeatLedger Solver<Dim, Real>::advance_block(std::size_t begin, std::size_t end, 
   compute_rate_sums<Dim, Real>(fields_, lists_, terms_.pair, parameters_.smoothing_length, begin, end, rates.data(),
                                sighted.data());
   if (terms_.diffusion) add_density_diffusion(begin, end, rates.data());
+  if (walls_) add_walls(begin, end, rates.data(), sighted.data());
   StressBlock<Dim> stresses{};
   HeatLedger passed;
-  for (std::size_t i = begin; i < end; ++i) {
-    RateSums<Dim, Real>& rate = rates[i - begin];
-    if (const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr)
-      add_wall_rates(*wall, rate, sighted[i - begin]);
-    Mat<Dim> correction = Mat<Dim>::Zero();
-    if (terms_.pair.stress || terms_.pair.has_heat())
-      correction = compute_gradient_correction<Dim>(unpack<Dim, Real>(rate.position_moment));
-    if (terms_.pair.has_heat()) {
-      if (dt > 0.0) passed += advance_heat(i, rate.heat, dt, time);
-      heat_balance_[i] = balance_heat<Dim, Real>(rate, correction);
-    }
-    if (terms_.pair.stress) collect_stress(i, correction, rate, sighted[i - begin], stresses);
-    if (parameters_.density == DensityForm::continuity && !is_driven(i))
-      particles_.density[i] += dt * rate.density_rate;
-    if (stresses.size == StressBlock<Dim>::capacity || (stresses.size > 0 && i + 1 == end))
-      advance_stresses(i + 1 - stresses.size, dt, stresses);
-    if (terms_.pair.xsph)
-      for (int a = 0; a < Dim; ++a) transport_[i][a] = static_cast<Real>(parameters_.xsph) * rate.xsph[a];
+  for (std::size_t first = begin; first < end; first += stresses.capacity) {
+    stresses.size = std::min(stresses.capacity, end - first);
+    passed +=
+        advance_together(first, rates.data() + (first - begin), sighted.data() + (first - begin), dt, time, stresses);
   }
   return passed;
 }
 
-/// Near walls; everywhere where density diffuses in a fluid with a stress. Where nothing but pressure (and artificial
-/// viscosity) acts, the fluid's motion says what gradient there must be for the diffusion, rho (gravity - a), as in
-/// [Rhie & Chow 1983]: the corrected gradient follows an error of the pressure where that is smooth, over two or three
-/// spacings at a wall, and would leave it alone for seconds. A stress would take part in a.
+/// As many particles from `first` on as `stresses` says, by what was summed for them.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::evaluate_pressure_gradients() {
+HeatLedger Solver<Dim, Real>::advance_together(std::size_t first, RateSums<Dim, Real>* rates,
+                                               const SightedSums<Dim, Real>* sighted, double dt, double time,
+                                               StressBlock<Dim>& stresses) {
+  if (terms_.pair.stress || terms_.pair.has_heat()) {
+    for (std::size_t m = 0; m < n_symmetric<Dim>; ++m)
+      for (std::size_t k = 0; k < stresses.size; ++k) stresses.moment[m][k] = rates[k].position_moment[m];
+    invert_moments<Dim>(stresses);
+  }
+  HeatLedger passed;
+  for (std::size_t k = 0; k < stresses.size; ++k) {
+    const std::size_t i = first + k;
+    if (terms_.pair.has_heat()) {
+      if (dt > 0.0) passed += advance_heat(i, rates[k].heat, dt, time);
+      heat_balance_[i] = balance_heat<Dim, Real>(rates[k], stresses.correction_of(k));
+    }
+    if (terms_.pair.stress) collect_stress(i, k, rates[k], sighted[k], stresses);
+    if (parameters_.density == DensityForm::continuity && !is_driven(i))
+      particles_.density[i] += dt * rates[k].density_rate;
+    if (terms_.pair.xsph)
+      for (int a = 0; a < Dim; ++a) transport_[i][a] = static_cast<Real>(parameters_.xsph) * rates[k].xsph[a];
+  }
+  if (terms_.pair.stress) advance_stresses(first, dt, stresses);
+  return passed;
+}
+
+/// Of the particles named, at walls [Pa/m]; where density diffuses in a fluid with a stress, everywhere.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::evaluate_pressure_gradients(std::span<const std::int32_t> particles) {
+  std::array<PressureGradientSums<Dim, Real>, block_size> sums;
+  compute_pressure_gradient_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length,
+                                            particles, sums.data());
+  for (std::size_t k = 0; k < particles.size(); ++k) {
+    const auto i = static_cast<std::size_t>(particles[k]);
+    const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr;
+    const Vec<Dim> gradient =
+        compute_pressure_gradient<Dim, Real>(sums[k], wall, particles_.density[i], parameters_.gravity);
+    if (wall) wall_gradient_[walls_->slot(*wall)] = gradient;
+    if (terms_.diffuses_along_gradients()) pack_gradient(i, gradient);
+  }
+}
+
+/// For the diffusion of density.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::pack_gradient(std::size_t i, const Vec<Dim>& gradient) {
+  Real* packed = packed_gradient_.data() + i * gradient_stride<Dim>;
+  for (int a = 0; a < Dim; ++a) packed[a] = static_cast<Real>(gradient[a]);
+  packed[Dim] = fields_.record(i)[PairFields<Dim, Real>::pressure_at];
+}
+
+/// What density diffuses along. Where nothing but pressure (and artificial viscosity) acts, the fluid's motion says
+/// what gradient there must be, rho (gravity - a), as in [Rhie & Chow 1983]: the corrected gradient follows an error of
+/// the pressure where that is smooth, over two or three spacings at a wall, and would leave it alone for seconds. A
+/// stress would take part in a.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::find_diffusion_gradients() {
   constexpr std::size_t stride = gradient_stride<Dim>;
   const std::size_t n = particles_.size();
-  const auto pack = [&](std::size_t i, const Vec<Dim>& gradient) {
-    Real* packed = packed_gradient_.data() + i * stride;
-    for (int a = 0; a < Dim; ++a) packed[a] = static_cast<Real>(gradient[a]);
-    packed[Dim] = fields_.record(i)[PairFields<Dim, Real>::pressure_at];
-  };
-  const bool everywhere = terms_.diffusion && terms_.pair.stress;
-  if (walls_) wall_gradient_.resize(walls_->neighbours().size());
-  if (terms_.diffusion) packed_gradient_.resize((n + images_.size()) * stride);
-  const auto evaluate = [&](std::span<const std::int32_t> particles) {
-    std::array<PressureGradientSums<Dim, Real>, block_size> sums;
-    compute_pressure_gradient_sums<Dim, Real>(fields_, lists_, parameters_.kernel, parameters_.smoothing_length,
-                                              particles, sums.data());
-    for (std::size_t k = 0; k < particles.size(); ++k) {
-      const auto i = static_cast<std::size_t>(particles[k]);
-      const WallNeighbour<Dim>* wall = walls_ ? walls_->of(i) : nullptr;
-      const Vec<Dim> gradient =
-          compute_pressure_gradient<Dim, Real>(sums[k], wall, particles_.density[i], parameters_.gravity);
-      if (wall) wall_gradient_[walls_->slot(*wall)] = gradient;
-      if (everywhere) pack(i, gradient);
-    }
-  };
-  if (everywhere || walls_)
-    parallel_blocks(everywhere ? n : walls_->neighbours().size(), [&](std::size_t begin, std::size_t end) {
+  packed_gradient_.resize((n + images_.size()) * stride);
+  if (terms_.diffuses_along_gradients())
+    parallel_blocks(n, [&](std::size_t begin, std::size_t end) {
       std::array<std::int32_t, block_size> particles;
-      for (std::size_t k = begin; k < end; ++k)
-        particles[k - begin] = everywhere ? static_cast<std::int32_t>(k) : walls_->neighbours()[k].particle;
-      evaluate({particles.data(), end - begin});
+      std::iota(particles.begin(), particles.begin() + (end - begin), static_cast<std::int32_t>(begin));
+      evaluate_pressure_gradients({particles.data(), end - begin});
     });
-  if (!terms_.diffusion) return;
-  if (!everywhere)
-    parallel_for_each(n,
-                      [&](std::size_t i) { pack(i, particles_.density[i] * (parameters_.gravity - acceleration(i))); });
+  else
+    parallel_for_each(
+        n, [&](std::size_t i) { pack_gradient(i, particles_.density[i] * (parameters_.gravity - acceleration(i))); });
   for (std::size_t k = 0; k < images_.size(); ++k)
     std::copy_n(packed_gradient_.data() + stride * static_cast<std::size_t>(images_.source[k]), stride,
                 packed_gradient_.data() + stride * (n + k));
@@ -180,6 +198,23 @@ void Solver<Dim, Real>::add_density_diffusion(std::size_t begin, std::size_t end
   for (std::size_t k = 0; k < end - begin; ++k) rates[k].density_rate += static_cast<Real>(strength * sums[k]);
 }
 
+/// What walls add to the sums of particles [begin, end), and the pressure's gradients at them, while what both read is
+/// in the caches.
+template <int Dim, typename Real>
+void Solver<Dim, Real>::add_walls(std::size_t begin, std::size_t end, RateSums<Dim, Real>* rates,
+                                  SightedSums<Dim, Real>* sighted) {
+  std::array<std::int32_t, block_size> walled;
+  std::size_t n_walled = 0;
+  for (std::size_t i = begin; i < end; ++i)
+    if (walls_->of(i)) walled[n_walled++] = static_cast<std::int32_t>(i);
+  const std::span<const std::int32_t> near(walled.data(), n_walled);
+  if (!terms_.diffuses_along_gradients()) evaluate_pressure_gradients(near);
+  for (const std::int32_t i : near) {
+    const std::size_t k = static_cast<std::size_t>(i) - begin;
+    add_wall_rates(*walls_->of(static_cast<std::size_t>(i)), rates[k], sighted[k]);
+  }
+}
+
 template <int Dim, typename Real>
 void Solver<Dim, Real>::add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<Dim, Real>& rate,
                                        SightedSums<Dim, Real>& sighted) const {
@@ -193,26 +228,21 @@ void Solver<Dim, Real>::add_wall_rates(const WallNeighbour<Dim>& wall, RateSums<
                                    rate, terms_.pair.sight ? &sighted : nullptr);
 }
 
-/// Adds particle `i` to those whose stress advances together; `correction` is L where sight does not differ.
+/// What the stress of particle `i`, the k-th of `stresses`, advances by.
 template <int Dim, typename Real>
-void Solver<Dim, Real>::collect_stress(std::size_t i, const Mat<Dim>& correction, RateSums<Dim, Real>& rate,
+void Solver<Dim, Real>::collect_stress(std::size_t i, std::size_t k, RateSums<Dim, Real>& rate,
                                        const SightedSums<Dim, Real>& sighted, StressBlock<Dim>& stresses) {
   if (parameters_.corrected_divergence) {
     const Mat<Dim> bare = unpack_gradient<Dim, Real>(rate.velocity_moment);
-    const double missed = (bare * correction).trace() - bare.trace();
+    const double missed = (bare * stresses.correction_of(k)).trace() - bare.trace();
     rate.density_rate -= static_cast<Real>(particles_.density[i] *
                                            missing_support<Dim>(unpack<Dim, Real>(rate.position_moment)) * missed);
   }
-  const std::size_t k = stresses.size++;
   const bool sees_less = terms_.pair.sight && sighted.position_moment != rate.position_moment;
   const auto& moment = sees_less ? sighted.velocity_moment : rate.velocity_moment;
-  const Mat<Dim> of_seen =
-      sees_less ? compute_gradient_correction<Dim>(unpack<Dim, Real>(sighted.position_moment)) : correction;
-  for (std::size_t a = 0; a < Dim; ++a)
-    for (std::size_t b = 0; b < Dim; ++b) {
-      stresses.bare_gradient[a * Dim + b][k] = moment[a * Dim + b];
-      stresses.correction[a * Dim + b][k] = of_seen(a, b);
-    }
+  for (std::size_t ab = 0; ab < Dim * Dim; ++ab) stresses.bare_gradient[ab][k] = moment[ab];
+  if (sees_less)
+    stresses.set_correction(k, compute_gradient_correction<Dim>(unpack<Dim, Real>(sighted.position_moment)));
   for (std::size_t m = 0; m < n_symmetric<Dim>; ++m) stresses.stress[m][k] = particles_.stress[i][m];
   stresses.viscosity[k] = particles_.viscosity[i];
   const FlowCurve curve = flow_curve_of(i);
@@ -222,7 +252,7 @@ void Solver<Dim, Real>::collect_stress(std::size_t i, const Mat<Dim>& correction
 }
 
 /// Advances the extra stress S of the collected particles, the first of which is `first`, and packs S L for the force
-/// pass. Empties the collection.
+/// pass.
 template <int Dim, typename Real>
 void Solver<Dim, Real>::advance_stresses(std::size_t first, double dt, StressBlock<Dim>& stresses) {
   correct_gradients<Dim>(stresses);
@@ -239,7 +269,6 @@ void Solver<Dim, Real>::advance_stresses(std::size_t first, double dt, StressBlo
   }
   correct_stresses<Dim>(stresses);
   for (std::size_t k = 0; k < stresses.size; ++k) pack_stress(first + k, k, stresses);
-  stresses.size = 0;
 }
 
 template class Solver<3, float>;

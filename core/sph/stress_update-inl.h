@@ -6,10 +6,13 @@
 #define SMELT_STRESS_UPDATE_INL_H
 #endif
 
+#include "core/sph/gradient_correction.h"
 #include "core/sph/stress_update.h"
 
 #include <hwy/contrib/math/math-inl.h>
 #include <hwy/highway.h>
+
+#include <cstdint>
 
 HWY_BEFORE_NAMESPACE();
 namespace smelt {
@@ -191,6 +194,64 @@ HWY_INLINE void for_each_vector(const StressBlock<Dim>& block, const Run& run) {
   for (std::size_t k = 0; k < block.size; k += hn::Lanes(StressTag())) run(k);
 }
 
+/// Inverts the moments whose eigenvalues all exceed smallest_trusted_moment, and leaves 0 for the others, which are
+/// returned, particle k as bit k.
+template <int Dim>
+std::uint64_t invert_moments(StressBlock<Dim>& block) {
+  static_assert(StressBlock<Dim>::capacity < 64);
+  const StressTag d;
+  const auto zero = hn::Zero(d);
+  std::uint64_t thin = 0;
+  for_each_vector(block, [&](std::size_t k) HWY_ATTR {
+    const Matrices<Dim> moment = Matrices<Dim>::load_symmetric(block.moment, k);
+    const auto& m = moment.entry;
+    const auto minor = [](StressVec p, StressVec q, StressVec r, StressVec s)
+                           HWY_ATTR { return hn::Sub(hn::Mul(p, q), hn::Mul(r, s)); };
+    // Sylvester's criterion, as eigenvalues_exceed has it.
+    const auto least = hn::Set(d, smallest_trusted_moment);
+    const auto a = hn::Sub(m[0][0], least);
+    auto trusted = hn::Gt(a, zero);
+    Matrices<Dim> inverse;
+    if constexpr (Dim == 1) {
+      inverse.entry[0][0] = hn::Div(hn::Set(d, 1.0), m[0][0]);
+    } else {
+      const auto b = hn::Sub(m[1][1], least);
+      const auto ab = minor(a, b, m[0][1], m[0][1]);
+      trusted = hn::And(trusted, hn::Gt(ab, zero));
+      if constexpr (Dim == 2) {
+        const auto scale = hn::Div(hn::Set(d, 1.0), minor(m[0][0], m[1][1], m[0][1], m[0][1]));
+        inverse.entry[0][0] = hn::Mul(scale, m[1][1]);
+        inverse.entry[1][1] = hn::Mul(scale, m[0][0]);
+        inverse.entry[0][1] = inverse.entry[1][0] = hn::Neg(hn::Mul(scale, m[0][1]));
+      } else {
+        const auto c = hn::Sub(m[2][2], least);
+        const auto determinant = hn::Add(hn::Sub(hn::Mul(c, ab), hn::Mul(m[1][2], minor(a, m[1][2], m[0][1], m[0][2]))),
+                                         hn::Mul(m[0][2], minor(m[0][1], m[1][2], b, m[0][2])));
+        trusted = hn::And(trusted, hn::Gt(determinant, zero));
+        // Cofactors over the determinant.
+        for (int row = 0; row < 3; ++row)
+          for (int column = row; column < 3; ++column) {
+            const int r1 = (row + 1) % 3, r2 = (row + 2) % 3, c1 = (column + 1) % 3, c2 = (column + 2) % 3;
+            inverse.entry[row][column] = minor(m[r1][c1], m[r2][c2], m[r1][c2], m[r2][c1]);
+          }
+        const auto whole = hn::MulAdd(m[0][2], inverse.entry[0][2],
+                                      hn::MulAdd(m[0][1], inverse.entry[0][1], hn::Mul(m[0][0], inverse.entry[0][0])));
+        const auto scale = hn::Div(hn::Set(d, 1.0), whole);
+        for (int row = 0; row < 3; ++row)
+          for (int column = row; column < 3; ++column)
+            inverse.entry[column][row] = inverse.entry[row][column] = hn::Mul(scale, inverse.entry[row][column]);
+      }
+    }
+    for (auto& row : inverse.entry)
+      for (auto& entry : row) entry = hn::IfThenElseZero(trusted, entry);
+    inverse.store(block.correction, k);
+    std::uint8_t bits[8] = {};
+    hn::StoreMaskBits(d, hn::AndNot(trusted, hn::FirstN(d, block.size - k)), bits);
+    thin |= std::uint64_t{bits[0]} << k;
+  });
+  return thin;
+}
+
 template <int Dim>
 void correct_gradients(StressBlock<Dim>& block) {
   for_each_vector(block, [&](std::size_t k) HWY_ATTR {
@@ -264,6 +325,9 @@ inline double relaxed_shear_rate(const FlowCurve& curve, double modulus_dt, doub
 
 // Highway's tables hold plain functions: one for each dimension.
 #define SMELT_INSTANTIATE(Dim)                                                     \
+  inline std::uint64_t invert_moments_##Dim(StressBlock<Dim>& block) {             \
+    return HWY_NAMESPACE::invert_moments<Dim>(block);                              \
+  }                                                                                \
   inline void correct_gradients_##Dim(StressBlock<Dim>& block) {                   \
     HWY_NAMESPACE::correct_gradients<Dim>(block);                                  \
   }                                                                                \

@@ -12,6 +12,7 @@
 #if HWY_ONCE
 #include "core/error.h"
 
+#include <bit>
 #include <cmath>
 #include <string>
 
@@ -65,6 +66,17 @@ template <int Dim>
   fail_to_relax(block.curve(k), block.modulus[k] * dt, fmt::format("a velocity gradient of {} 1/s", std::sqrt(rate2)));
 }
 
+/// Those with too few neighbours along some axis, one by one.
+template <int Dim>
+void correct_thin(std::uint64_t thin, StressBlock<Dim>& block) {
+  for (; thin != 0; thin &= thin - 1) {
+    const auto k = static_cast<std::size_t>(std::countr_zero(thin));
+    Symmetric<Dim> moment;
+    for (std::size_t m = 0; m < n_symmetric<Dim>; ++m) moment[m] = block.moment[m][k];
+    block.set_correction(k, compute_gradient_correction<Dim>(to_matrix<Dim>(moment)));
+  }
+}
+
 }  // namespace
 
 HWY_EXPORT(relaxed_shear_rate);
@@ -76,9 +88,14 @@ double relaxed_shear_rate(const FlowCurve& curve, double modulus_dt, double tria
 }
 
 #define SMELT_DISPATCH(Dim)                                                                \
+  HWY_EXPORT(invert_moments_##Dim);                                                        \
   HWY_EXPORT(correct_gradients_##Dim);                                                     \
   HWY_EXPORT(correct_stresses_##Dim);                                                      \
   HWY_EXPORT(relax_stresses_##Dim);                                                        \
+  template <>                                                                              \
+  void invert_moments<Dim>(StressBlock<Dim> & block) {                                     \
+    correct_thin<Dim>(HWY_DYNAMIC_DISPATCH(invert_moments_##Dim)(block), block);           \
+  }                                                                                        \
   template <>                                                                              \
   void correct_gradients<Dim>(StressBlock<Dim> & block) {                                  \
     HWY_DYNAMIC_DISPATCH(correct_gradients_##Dim)(block);                                  \

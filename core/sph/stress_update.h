@@ -40,8 +40,9 @@ struct StressBlock {
   using Field = std::array<double, capacity>;
 
   std::size_t size = 0;                                    ///< particles in it
-  alignas(64) std::array<Field, Dim * Dim> bare_gradient;  ///< sum V_j (v_j - v_i) (x) grad_w_ij, row-major [1/s]
-  std::array<Field, Dim * Dim> correction;                 ///< L, row-major (core/sph/gradient_correction.h)
+  alignas(64) std::array<Field, n_symmetric<Dim>> moment;  ///< M, packed (core/sph/gradient_correction.h)
+  std::array<Field, Dim * Dim> bare_gradient;              ///< sum V_j (v_j - v_i) (x) grad_w_ij, row-major [1/s]
+  std::array<Field, Dim * Dim> correction;                 ///< L, row-major
   std::array<Field, Dim * Dim> gradient;                   ///< of the velocity, bare_gradient L [1/s]
   std::array<Field, n_symmetric<Dim>> stress;              ///< S [Pa]
   std::array<Field, Dim * Dim> corrected_stress;           ///< S L [Pa]
@@ -55,8 +56,22 @@ struct StressBlock {
     index[k] = curve.index;
     rest_viscosity[k] = curve.rest_viscosity;
   }
+  Mat<Dim> correction_of(std::size_t k) const {
+    Mat<Dim> l;
+    for (int a = 0; a < Dim; ++a)
+      for (int b = 0; b < Dim; ++b) l(a, b) = correction[a * Dim + b][k];
+    return l;
+  }
+  void set_correction(std::size_t k, const Mat<Dim>& l) {
+    for (int a = 0; a < Dim; ++a)
+      for (int b = 0; b < Dim; ++b) correction[a * Dim + b][k] = l(a, b);
+  }
   FlowCurve curve(std::size_t k) const { return {yield_stress[k], consistency[k], index[k], rest_viscosity[k]}; }
 };
+
+/// `correction` from `moment`: compute_gradient_correction of each.
+template <int Dim>
+void invert_moments(StressBlock<Dim>& block);
 
 /// `gradient` from `bare_gradient` and `correction`.
 template <int Dim>

@@ -1,5 +1,6 @@
 #include "core/sph/rheology.h"
 
+#include "core/sph/gradient_correction.h"
 #include "core/sph/stress_update.h"
 
 #include <fmt/format.h>
@@ -183,6 +184,48 @@ TEST(StressUpdate, BytesDependNeitherOnCompanyNorOnInstructions) {
     const double rate = stress_magnitude<3>(alone.stress) / alone.viscosity;
     EXPECT_NEAR(shear_stress(before.curve(k), rate) / stress_magnitude<3>(alone.stress), 1.0, 1e-6) << "particle " << k;
   }
+}
+
+/// Moments as in the bulk, at surfaces, and of sheets, threads and lone particles, which have too few neighbours.
+template <int Dim>
+void expect_inverse_moments() {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  StressBlock<Dim> block{};
+  block.size = 27;
+  for (std::size_t k = 0; k < block.size; ++k) {
+    Mat<Dim> any = Mat<Dim>::NullaryExpr([&] { return uniform(random); });
+    any += any.transpose().eval();
+    const Mat<Dim> axes = Eigen::SelfAdjointEigenSolver<Mat<Dim>>(any).eigenvectors();
+    Vec<Dim> eigenvalues;
+    for (int a = 0; a < Dim; ++a)
+      eigenvalues[a] = static_cast<int>(k % 4) > a ? 0.09 * uniform(random) : 0.2 + uniform(random);
+    const Symmetric<Dim> moment = to_symmetric<Dim>(axes * eigenvalues.asDiagonal() * axes.transpose());
+    for (std::size_t m = 0; m < n_symmetric<Dim>; ++m) block.moment[m][k] = moment[static_cast<Eigen::Index>(m)];
+  }
+  StressBlock<Dim> narrow = block;
+  invert_moments<Dim>(block);
+  hwy::SetSupportedTargetsForTest(HWY_AVX2);
+  hwy::GetChosenTarget().DeInit();
+  invert_moments<Dim>(narrow);
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().DeInit();
+  for (std::size_t k = 0; k < block.size; ++k) {
+    Symmetric<Dim> moment;
+    for (std::size_t m = 0; m < n_symmetric<Dim>; ++m) moment[static_cast<Eigen::Index>(m)] = block.moment[m][k];
+    const Mat<Dim> expected = compute_gradient_correction<Dim>(to_matrix<Dim>(moment));
+    EXPECT_LT((block.correction_of(k) - expected).norm(), 1e-12 * (1.0 + expected.norm()))
+        << Dim << "D, particle " << k;
+    EXPECT_EQ(block.correction_of(k), narrow.correction_of(k)) << Dim << "D, particle " << k;
+  }
+  for (std::size_t k = block.size; k < block.capacity; ++k)
+    EXPECT_TRUE(block.correction_of(k).isZero(0.0)) << "what fills a vector stays harmless";
+}
+
+TEST(StressUpdate, MomentsAreInvertedAsOneByOne) {
+  expect_inverse_moments<1>();
+  expect_inverse_moments<2>();
+  expect_inverse_moments<3>();
 }
 
 }  // namespace
