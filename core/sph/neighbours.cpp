@@ -98,16 +98,32 @@ class CellTable {
 };
 
 /// Particles [begin, end) that lie next to one another.
-struct Run {
+struct Piece {
   std::int32_t begin, end;
 };
 
-/// The particles of the 3^Dim cells around a cell, joined to as few runs as can be.
+/// What the particles of a cell may have in reach: pieces in order, and the runs that they lie in. A run spans no more
+/// than a byte can say, gaps included.
+struct Surroundings {
+  std::vector<Piece> cells;
+  std::vector<Piece> pieces;
+  std::vector<std::int32_t> run_begin;      ///< the first particle of each run
+  std::vector<std::size_t> first_piece{0};  ///< of each run, and where the last ends
+
+  void clear() {
+    pieces.clear();
+    run_begin.clear();
+    first_piece.assign(1, 0);
+  }
+  std::size_t n_runs() const { return run_begin.size(); }
+};
+
+/// The particles of the 3^Dim cells around a cell.
 template <int Dim>
-std::vector<Run> find_runs(const CellTable& table, std::uint64_t key) {
+void find_surroundings(const CellTable& table, std::uint64_t key, Surroundings& out) {
   constexpr int n_around = Dim == 1 ? 3 : Dim == 2 ? 9 : 27;
-  std::vector<Run> cells;
-  cells.reserve(n_around);
+  std::vector<Piece>& cells = out.cells;
+  cells.clear();
   for (int k = 0; k < n_around; ++k) {
     const std::uint64_t dx = k % 3, dy = Dim > 1 ? k / 3 % 3 : 1, dz = Dim > 2 ? k / 9 : 1;
     std::uint64_t around = key + dx - 1;
@@ -115,28 +131,27 @@ std::vector<Run> find_runs(const CellTable& table, std::uint64_t key) {
     if constexpr (Dim > 2) around += (dz - 1) << (2 * bits_per_axis);
     if (const CellTable::Cell* cell = table.find(around)) cells.push_back({cell->begin, cell->end});
   }
-  std::sort(cells.begin(), cells.end(), [](const Run& a, const Run& b) { return a.begin < b.begin; });
-  std::vector<Run> runs;
-  for (const Run& cell : cells) {
-    if (!runs.empty() && runs.back().end == cell.begin)
-      runs.back().end = cell.end;
-    else
-      runs.push_back(cell);
-  }
-  return runs;
-}
-
-/// In pieces of which each particle's place fits a byte.
-std::vector<Run> split_runs(const std::vector<Run>& runs) {
-  std::vector<Run> pieces;
-  for (const Run& run : runs)
-    for (std::int32_t begin = run.begin; begin < run.end; begin += NeighbourLists::max_run)
-      pieces.push_back({begin, std::min(run.end, begin + NeighbourLists::max_run)});
-  return pieces;
+  std::sort(cells.begin(), cells.end(), [](const Piece& a, const Piece& b) { return a.begin < b.begin; });
+  out.clear();
+  for (const Piece& cell : cells)
+    for (std::int32_t begin = cell.begin; begin < cell.end;) {
+      const std::int32_t end = std::min(cell.end, begin + NeighbourLists::max_run);
+      const bool starts_run = out.run_begin.empty() || end - out.run_begin.back() > NeighbourLists::max_run;
+      if (starts_run) {
+        out.run_begin.push_back(begin);
+        out.first_piece.push_back(0);
+      }
+      if (!starts_run && out.pieces.back().end == begin)
+        out.pieces.back().end = end;
+      else
+        out.pieces.push_back({begin, end});
+      out.first_piece.back() = out.pieces.size();
+      begin = end;
+    }
 }
 
 /// What cells are sorted by. In 3D, rods of 8 x 4 cells along x one after another: what the particles of a few cells
-/// have in reach then lies in a core's own cache however many particles there are, in a dozen runs.
+/// have in reach then lies in a core's own cache however many particles there are, in half a dozen runs.
 constexpr int rod_y_bits = 3, rod_z_bits = 2;
 template <int Dim>
 std::uint64_t rank_cell(std::uint64_t key) {
@@ -164,7 +179,7 @@ void replace(std::vector<T>& target, std::span<const T> source) {
   target.assign(source.begin(), source.end());
 }
 
-/// What the particles of one cell may have in reach: positions run by run, each run padded to whole vectors with what
+/// What the particles of one cell may have in reach: positions piece by piece, each padded to whole vectors with what
 /// nothing reaches. In single precision, in units of the radius, from the first of the cell's own particles.
 template <int Dim>
 struct Candidates {
@@ -174,32 +189,34 @@ struct Candidates {
   Vec<Dim> origin;
   double inverse_radius = 1.0;
   std::array<std::vector<float>, Dim> x;
-  std::vector<std::uint64_t> places;      ///< of a vector in their run, a byte each
-  std::vector<std::size_t> first_vector;  ///< of each run, and where the last ends
+  std::vector<std::uint64_t> places;      ///< of a vector in their run, a byte each; beyond the piece's end anything
+  std::vector<std::size_t> first_vector;  ///< of each piece, and where the last ends
 
   float coordinate(const Vec<Dim>& position, int axis) const {
     return static_cast<float>((position[axis] - origin[axis]) * inverse_radius);
   }
 
-  void gather(std::span<const Vec<Dim>> position, const Vec<Dim>& from, double radius, const std::vector<Run>& runs) {
+  void gather(std::span<const Vec<Dim>> position, const Vec<Dim>& from, double radius, const Surroundings& around) {
     constexpr std::uint64_t first_places = 0x0706050403020100, ones = 0x0101010101010101;
     origin = from;
     inverse_radius = 1.0 / radius;
     places.clear();
     first_vector.clear();
-    for (const Run& run : runs) {
-      first_vector.push_back(places.size());
-      const auto n = static_cast<std::size_t>(run.end - run.begin);
-      for (std::size_t k = 0; k < n; k += width) places.push_back(first_places + k * ones);
-    }
+    for (std::size_t r = 0; r < around.n_runs(); ++r)
+      for (std::size_t p = around.first_piece[r]; p < around.first_piece[r + 1]; ++p) {
+        const Piece& piece = around.pieces[p];
+        first_vector.push_back(places.size());
+        for (std::int32_t j = piece.begin; j < piece.end; j += static_cast<std::int32_t>(width))
+          places.push_back(first_places + static_cast<std::uint64_t>(j - around.run_begin[r]) * ones);
+      }
     first_vector.push_back(places.size());
     for (auto& coordinates : x) coordinates.resize(std::max(coordinates.size(), width * places.size()));
-    for (std::size_t r = 0; r < runs.size(); ++r) {
-      std::size_t at = width * first_vector[r];
-      for (std::int32_t j = runs[r].begin; j < runs[r].end; ++j, ++at)
+    for (std::size_t p = 0; p < around.pieces.size(); ++p) {
+      std::size_t at = width * first_vector[p];
+      for (std::int32_t j = around.pieces[p].begin; j < around.pieces[p].end; ++j, ++at)
 #pragma GCC unroll 3
         for (int axis = 0; axis < Dim; ++axis) x[axis][at] = coordinate(position[j], axis);
-      for (; at < width * first_vector[r + 1]; ++at) x[0][at] = nowhere;
+      for (; at < width * first_vector[p + 1]; ++at) x[0][at] = nowhere;
     }
   }
 };
@@ -238,15 +255,15 @@ class RowBytes {
 
 /// Appends the row of particle `i` to `bytes`; returns how many neighbours it has.
 template <int Dim>
-std::size_t append_row(Candidates<Dim>& candidates, const Vec<Dim>& position, float radius2,
-                       const std::vector<Run>& runs, std::int32_t i, RowBytes& bytes) {
+std::size_t append_row(Candidates<Dim>& candidates, const Vec<Dim>& position, float radius2, const Surroundings& around,
+                       std::int32_t i, RowBytes& bytes) {
   constexpr std::size_t width = Candidates<Dim>::width;
   constexpr std::uint64_t ones = 0x0101010101010101;
   const std::size_t n_vectors = candidates.places.size();
   thread_local std::vector<std::uint8_t*> end_of;  // what each vector wrote
   end_of.resize(n_vectors);
-  std::uint8_t* const counts = bytes.make_room(runs.size() + width * (n_vectors + 1));
-  std::uint8_t* const first = counts + runs.size();
+  std::uint8_t* const counts = bytes.make_room(around.n_runs() + width * (n_vectors + 1));
+  std::uint8_t* const first = counts + around.n_runs();
   std::uint8_t* place = first;
   const __m256 radius2s = _mm256_set1_ps(radius2);
   std::array<const float*, Dim> x;
@@ -256,12 +273,12 @@ std::size_t append_row(Candidates<Dim>& candidates, const Vec<Dim>& position, fl
     from[axis] = _mm256_set1_ps(candidates.coordinate(position, axis));
   }
   // Out of its own reach for a while.
-  std::size_t own_run = 0;
-  while (i >= runs[own_run].end) ++own_run;
-  float& own_x =
-      candidates.x[0][width * candidates.first_vector[own_run] + static_cast<std::size_t>(i - runs[own_run].begin)];
+  std::size_t own_piece = 0;
+  while (i >= around.pieces[own_piece].end) ++own_piece;
+  float& own_x = candidates.x[0][width * candidates.first_vector[own_piece] +
+                                 static_cast<std::size_t>(i - around.pieces[own_piece].begin)];
   const float kept_x = std::exchange(own_x, Candidates<Dim>::nowhere);
-  // All runs in one loop: where one of them ends could not be foretold.
+  // All pieces in one loop: where one of them ends could not be foretold.
   const std::uint64_t* const places = candidates.places.data();
   std::uint8_t** const ends = end_of.data();
   for (std::size_t v = 0; v < n_vectors; ++v) {
@@ -273,8 +290,8 @@ std::size_t append_row(Candidates<Dim>& candidates, const Vec<Dim>& position, fl
   }
   own_x = kept_x;
   const std::uint8_t* before = first;
-  for (std::size_t r = 0; r < runs.size(); ++r) {
-    const std::uint8_t* const end = ends[candidates.first_vector[r + 1] - 1];
+  for (std::size_t r = 0; r < around.n_runs(); ++r) {
+    const std::uint8_t* const end = ends[candidates.first_vector[around.first_piece[r + 1]] - 1];
     counts[r] = static_cast<std::uint8_t>(end - before);
     before = end;
   }
@@ -319,7 +336,7 @@ void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, do
                            NeighbourLists& lists) {
   CHECK_GE(cell_size, radius);
   CHECK(std::has_single_bit(static_cast<unsigned>(row_multiple)) &&
-        static_cast<std::size_t>(row_multiple) <= NeighbourLists::step);
+        static_cast<std::size_t>(row_multiple) <= NeighbourLists::max_multiple);
   const CellTable table(position, make_cell_frame<Dim>(position, cell_size));
   // In radii. No coordinate of up to two cells is rounded by more: what lies within the radius must not be lost.
   const auto radius2 = static_cast<float>(1.0 + search_excess * cell_size / radius);
@@ -336,6 +353,7 @@ void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, do
         NeighbourLists::Block& block = lists.blocks[b];
         thread_local std::vector<std::int32_t> run_begin;
         thread_local RowBytes bytes;
+        thread_local Surroundings around;
         thread_local Candidates<Dim> candidates;
         run_begin.clear();
         bytes.clear();
@@ -343,13 +361,13 @@ void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, do
           block.first_run[k] = static_cast<std::uint32_t>(run_begin.size());
           const std::size_t c = b * cells_per_block + k;
           if (c >= cells.size()) continue;
-          const std::vector<Run> runs = split_runs(find_runs<Dim>(table, cells[c].key));
-          for (const Run& run : runs) run_begin.push_back(run.begin);
-          candidates.gather(position, position[cells[c].begin], radius, runs);
+          find_surroundings<Dim>(table, cells[c].key, around);
+          run_begin.insert(run_begin.end(), around.run_begin.begin(), around.run_begin.end());
+          candidates.gather(position, position[cells[c].begin], radius, around);
           for (std::int32_t i = cells[c].begin; i < cells[c].end; ++i) {
             CHECK_LE(bytes.size(), std::numeric_limits<std::uint32_t>::max());
             lists.places[i] = {static_cast<std::uint32_t>(c), static_cast<std::uint32_t>(bytes.size())};
-            longest[b] = std::max(longest[b], append_row<Dim>(candidates, position[i], radius2, runs, i, bytes));
+            longest[b] = std::max(longest[b], append_row<Dim>(candidates, position[i], radius2, around, i, bytes));
           }
         }
         block.first_run.back() = static_cast<std::uint32_t>(run_begin.size());

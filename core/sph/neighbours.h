@@ -15,13 +15,14 @@
 namespace smelt {
 
 /// The neighbours of each particle, itself left out, in a byte each: these rows are most of what a simulation keeps in
-/// memory. What the particles of a grid cell may have in reach lies in a few runs of particles next to one another, the
+/// memory. What the particles of a grid cell may have in reach lies in a few runs of particles near one another, the
 /// same for all of them. A row says for each run how many of its particles are neighbours, then which, counted from the
 /// run's first.
 struct NeighbourLists {
   static constexpr std::size_t cells_per_block = 32;
   static constexpr std::int32_t max_run = 255;  ///< particles: places in a run and counts of them fit a byte
-  static constexpr std::size_t step = 16;  ///< places that are read at once; a block ends in as many that nobody means
+  static constexpr std::size_t max_multiple = 16;
+  static constexpr std::size_t step = 32;  ///< places that are read at once; a block ends in as many that nobody means
 
   /// The rows of a number of cells, as the search makes them: one thread a block.
   struct Block {
@@ -93,14 +94,15 @@ struct NeighbourLists {
   /// By hand: the compiler takes four scalar instructions a place.
   template <std::uint32_t stride>
   static void spell_out(std::int32_t begin, const std::uint8_t* place, std::int32_t* out) {
-    static_assert(step == 16 && std::has_single_bit(stride));
+    static_assert(step % 8 == 0 && std::has_single_bit(stride));
     constexpr int shift = std::countr_zero(stride);
     const __m256i first = _mm256_set1_epi32(times<stride>(begin));
-    const __m128i low = _mm_loadu_si128(reinterpret_cast<const __m128i*>(place)), high = _mm_srli_si128(low, 8);
-    const __m256i after[2] = {_mm256_cvtepu8_epi32(low), _mm256_cvtepu8_epi32(high)};
-    for (int half = 0; half < 2; ++half)
-      _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + 8 * half),
-                          _mm256_add_epi32(first, _mm256_slli_epi32(after[half], shift)));
+#pragma GCC unroll 4
+    for (std::size_t k = 0; k < step; k += 8) {
+      const __m256i after = _mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(place + k)));
+      _mm256_storeu_si256(reinterpret_cast<__m256i*>(out + k),
+                          _mm256_add_epi32(first, _mm256_slli_epi32(after, shift)));
+    }
   }
 };
 
