@@ -166,15 +166,14 @@ std::uint64_t rank_cell(std::uint64_t key) {
   return (rank << y_bits) | (y & y_mask);
 }
 
-/// Sets `target` to `source` without keeping the room of the most it ever held: over many searches every block would
-/// come to hold that. Whole kilobytes, so that what one block gives back another can take.
+/// Sets `target` to `source`. Half as much again is set aside for what rows may grow to: memory that is not written takes
+/// none, but blocks that all move to a little more leave holes too small for any other. It is given back once the block
+/// needs three quarters of what it did.
 template <typename T>
 void replace(std::vector<T>& target, std::span<const T> source) {
-  constexpr std::size_t step = 1024 / sizeof(T);
-  const std::size_t room = (source.size() + step - 1) / step * step;
-  if (target.capacity() != room) {
+  if (source.size() > target.capacity() || 2 * source.size() < target.capacity()) {
     target = std::vector<T>();
-    target.reserve(room);
+    target.reserve(source.size() + source.size() / 2);
   }
   target.assign(source.begin(), source.end());
 }
@@ -384,8 +383,7 @@ void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, do
 
 std::size_t NeighbourLists::n_bytes() const {
   std::size_t n = places.size() * sizeof(places[0]) + blocks.size() * sizeof(Block) + names.size() * sizeof(names[0]);
-  for (const Block& block : blocks)
-    n += block.run_begin.capacity() * sizeof(block.run_begin[0]) + block.bytes.capacity();
+  for (const Block& block : blocks) n += block.run_begin.size() * sizeof(block.run_begin[0]) + block.bytes.size();
   return n;
 }
 

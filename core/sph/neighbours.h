@@ -19,7 +19,7 @@ namespace smelt {
 /// same for all of them. A row says for each run how many of its particles are neighbours, then which, counted from the
 /// run's first.
 struct NeighbourLists {
-  static constexpr std::size_t cells_per_block = 32;
+  static constexpr std::size_t cells_per_block = 64;
   static constexpr std::int32_t max_run = 255;  ///< particles: places in a run and counts of them fit a byte
   static constexpr std::size_t max_multiple = 16;
   static constexpr std::size_t step = 32;  ///< places that are read at once; a block ends in as many that nobody means
