@@ -69,11 +69,11 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
                   n_pressure = Fields::specific_pressure_at + 1 - pressure_at;
     [[maybe_unused]] const auto sight_of_i = hn::Set(d, static_cast<Real>(sight_of_thinner) * record_i[eta_at]);
     [[maybe_unused]] const auto sight_i = hn::Set(d, static_cast<Real>(sight_of_thinner) * record_i[eta_at + 1]);
-    const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const Neighbours<Dim, Real> pair(record_i, records, index);
+    const auto add_pairs = [&](const std::int32_t* begins, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const Neighbours<Dim, Real> pair(record_i, records, begins);
       const auto &x_ij = pair.x_ij, &v_ij = pair.v_ij;
       Simd<Real> pressure_j[padded_fields(n_pressure)];
-      load_fields<Fields::record_size, n_pressure>(records, pressure_at, index, pressure_j);
+      load_fields<Fields::record_size, n_pressure>(records, pressure_at, begins, pressure_j);
       const auto specific_pressure_j = pressure_j[Fields::specific_pressure_at - pressure_at];
       const auto r2 = dot<Dim, Real>(x_ij, x_ij);
       const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(r2));
@@ -89,7 +89,7 @@ void force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists
       if constexpr (with_stress) {
         constexpr int n_stress = Fields::n_stress(with_hourglass);
         Simd<Real> stress_j[padded_fields(n_stress)];
-        load_fields<Fields::record_size, n_stress>(records, stresses_at, index, stress_j);
+        load_fields<Fields::record_size, n_stress>(records, stresses_at, begins, stress_j);
         // m_j/(rho_i rho_j) = V_j/rho_i; times the sight of i, and of j.
         const auto scale = hn::Mul(volume_f, inverse_density_i);
         auto scale_i = scale, scale_j = scale;
@@ -138,10 +138,10 @@ void gas_force_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& l
   for (std::size_t i = begin; i < end; ++i) {
     fetch_ahead<false>(fields, lists, i);
     const Real* record_i = fields.record(i);
-    const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const Neighbours<Dim, Real> pair(record_i, records, index);
-      const auto specific_pressure_j = load_field<Dim, Real, Fields::specific_pressure_at>(fields, index);
-      const auto sound_speed_j = load_field<Dim, Real, Fields::sound_speed_at>(fields, index);
+    const auto add_pairs = [&](const std::int32_t* begins, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const Neighbours<Dim, Real> pair(record_i, records, begins);
+      const auto specific_pressure_j = load_field<Dim, Real, Fields::specific_pressure_at>(fields, begins);
+      const auto sound_speed_j = load_field<Dim, Real, Fields::sound_speed_at>(fields, begins);
       const auto r2 = dot<Dim, Real>(pair.x_ij, pair.x_ij);
       const auto v_x = dot<Dim, Real>(pair.v_ij, pair.x_ij);
       // Twice c_ij and twice rho_ij: the halves cancel but for beta's.

@@ -166,9 +166,9 @@ std::uint64_t rank_cell(std::uint64_t key) {
   return (rank << y_bits) | (y & y_mask);
 }
 
-/// Sets `target` to `source`. Half as much again is set aside for what rows may grow to: memory that is not written takes
-/// none, but blocks that all move to a little more leave holes too small for any other. It is given back once the block
-/// needs three quarters of what it did.
+/// Sets `target` to `source`. Half as much again is set aside for what rows may grow to: memory that is not written
+/// takes none, but blocks that all move to a little more leave holes too small for any other. It is given back once the
+/// block needs three quarters of what it did.
 template <typename T>
 void replace(std::vector<T>& target, std::span<const T> source) {
   if (source.size() > target.capacity() || 2 * source.size() < target.capacity()) {

@@ -44,10 +44,9 @@ struct NeighbourLists {
   std::vector<Place> places;
   std::vector<std::int32_t> names;  ///< what places in the order of the search stand for; empty: themselves
   std::size_t longest = 0;          ///< row, in neighbours
-  /// Particles from one to those that the rows after its own will name for the first time: their records may be
-  /// fetched.
+  /// So many particles after one lie those that rows will soon name for the first time: a pass may fetch them ahead.
   std::size_t look_ahead = 0;
-  int row_multiple = 1;  ///< a power of two, up to `step`
+  int row_multiple = 1;  ///< a power of two, up to max_multiple
 
   std::size_t size() const { return places.size(); }
   std::size_t n_bytes() const;
@@ -75,8 +74,8 @@ struct NeighbourLists {
     const auto n = static_cast<std::size_t>(end - buffer);
     for (std::size_t k = 0; k < n && !names.empty(); ++k)
       buffer[k] = times<stride>(names[static_cast<std::uint32_t>(buffer[k]) / stride]);
-    std::fill_n(end, step,
-                times<stride>(static_cast<std::int32_t>(i)));  // no fewer than are wanted, and of a known number
+    // No fewer than are wanted, and of a known number.
+    std::fill_n(end, max_multiple, times<stride>(static_cast<std::int32_t>(i)));
     const auto multiple = static_cast<std::size_t>(row_multiple);
     const std::size_t n_padded = (n + multiple - 1) & ~(multiple - 1);
     return {{buffer, n}, {buffer, n_padded}};

@@ -134,10 +134,10 @@ HWY_INLINE void load_fields(const double* array, std::ptrdiff_t first, const std
 
 /// One field of a vector of neighbours.
 template <int Dim, typename Real, int field>
-HWY_INLINE Simd<Real> load_field(const PairFields<Dim, Real>& fields, const std::int32_t* index) {
+HWY_INLINE Simd<Real> load_field(const PairFields<Dim, Real>& fields, const std::int32_t* begins) {
   constexpr int n_together = std::is_same_v<Real, float> ? 4 : 1, first = field / n_together * n_together;
   Simd<Real> loaded[4];
-  load_fields<PairFields<Dim, Real>::record_size, n_together>(fields.records.data(), first, index, loaded);
+  load_fields<PairFields<Dim, Real>::record_size, n_together>(fields.records.data(), first, begins, loaded);
   return loaded[field - first];
 }
 
@@ -208,7 +208,7 @@ HWY_INLINE void fold_row_of_half_groups(const NeighbourLists::Row& row, hn::Vec<
   for (int s = 0; s < n_sums; ++s) folded[s] = hn::Add(folded[s], second[s]);
 }
 
-/// Adds up what `add(index, sums)` adds to `sums`, vectors of lanes, for every vector of neighbours in `row`; vectors
+/// Adds up what `add(begins, sums)` adds to `sums`, vectors of lanes, for every vector of neighbours in `row`; vectors
 /// of padding alone are left out, as they would add nothing. The same bytes on every machine: sums are folded to half
 /// of pair_lanes, then these are summed, whatever the length of a vector. `total` has n_sums entries.
 template <int n_sums, typename Real, typename Add>
@@ -244,9 +244,9 @@ HWY_INLINE SumGroup<n_sums, Add> sum_group(const Add& add) {
 template <typename Real, typename... Group>
 HWY_INLINE void sum_row_in_groups(const NeighbourLists::Row& row, Real* total, const Group&... group) {
   if constexpr (lanes<Real> == pair_lanes<Real>) {
-    const auto add = [&](const std::int32_t* index, Simd<Real>* sums) HWY_ATTR __attribute__((always_inline)) {
+    const auto add = [&](const std::int32_t* begins, Simd<Real>* sums) HWY_ATTR __attribute__((always_inline)) {
       int at = 0;
-      ((group.add(index, sums + at), at += Group::n), ...);
+      ((group.add(begins, sums + at), at += Group::n), ...);
     };
     sum_row<(Group::n + ...)>(row, total, add);
   } else {
@@ -269,11 +269,11 @@ template <int Dim, typename Real>
 struct Neighbours {
   Simd<Real> x_ij[Dim], v_ij[Dim], volume, density;
 
-  HWY_INLINE Neighbours(const Real* record_i, const Real* records, const std::int32_t* index) {
+  HWY_INLINE Neighbours(const Real* record_i, const Real* records, const std::int32_t* begins) {
     using Fields = PairFields<Dim, Real>;
     const Tag<Real> d;
     Simd<Real> fields[padded_fields(Fields::n_motion)];
-    load_fields<Fields::record_size, Fields::n_motion>(records, 0, index, fields);
+    load_fields<Fields::record_size, Fields::n_motion>(records, 0, begins, fields);
     for (int a = 0; a < Dim; ++a) x_ij[a] = hn::Sub(hn::Set(d, record_i[a]), fields[a]);
     for (int a = 0; a < Dim; ++a)
       v_ij[a] = hn::Sub(hn::Set(d, record_i[Fields::velocity_at + a]), fields[Fields::velocity_at + a]);

@@ -32,10 +32,10 @@ void density_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lis
     const Real* record_i = fields.record(i);
     const NeighbourLists::Row row = fields.read_row(lists, i, buffer.data());
     const std::int32_t* row_end = row.neighbours.data() + row.neighbours.size();
-    const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const Neighbours<Dim, Real> pair(record_i, fields.records.data(), index);
+    const auto add_pairs = [&](const std::int32_t* begins, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const Neighbours<Dim, Real> pair(record_i, fields.records.data(), begins);
       // The padding is the particle itself, whose W is not nothing: it counts once, below.
-      const auto n_left = static_cast<std::size_t>(std::max<std::ptrdiff_t>(row_end - index, 0));
+      const auto n_left = static_cast<std::size_t>(std::max<std::ptrdiff_t>(row_end - begins, 0));
       const auto w = hn::IfThenElseZero(hn::FirstN(d, n_left), kernel.value(dot<Dim, Real>(pair.x_ij, pair.x_ij)));
       const auto volume_w = hn::Mul(pair.volume, w);
       sum[0] = hn::MulAdd(pair.density, volume_w, sum[0]);

@@ -27,11 +27,11 @@ void pressure_gradient_sums(const PairFields<Dim, Real>& fields, const Neighbour
     const auto i = static_cast<std::size_t>(particles[k]);
     const Real* record_i = fields.record(i);
     // The gradient is first, then the moment.
-    const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const Neighbours<Dim, Real> pair(record_i, fields.records.data(), index);
+    const auto add_pairs = [&](const std::int32_t* begins, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const Neighbours<Dim, Real> pair(record_i, fields.records.data(), begins);
       const auto& x_ij = pair.x_ij;
       const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(dot<Dim, Real>(x_ij, x_ij)));
-      const auto p_j = load_field<Dim, Real, Fields::pressure_at>(fields, index);
+      const auto p_j = load_field<Dim, Real, Fields::pressure_at>(fields, begins);
       const auto p_ji = hn::Sub(p_j, hn::Set(d, record_i[Fields::pressure_at]));
       for (int a = 0; a < Dim; ++a) sum[a] = hn::MulAdd(p_ji, hn::Mul(volume_f, x_ij[a]), sum[a]);
       add_position_moment<Dim, Real>(pair, volume_f, sum + Dim);
@@ -55,11 +55,11 @@ void pressure_diffusion_sums(const PairFields<Dim, Real>& fields, const std::vec
   for (std::size_t i = begin; i < end; ++i) {
     const Real* record_i = fields.record(i);
     const Real* gradient_i = gradients.data() + i * stride;
-    const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const Neighbours<Dim, Real> pair(record_i, fields.records.data(), index);
+    const auto add_pairs = [&](const std::int32_t* begins, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const Neighbours<Dim, Real> pair(record_i, fields.records.data(), begins);
       const auto r2 = dot<Dim, Real>(pair.x_ij, pair.x_ij);
       Simd<Real> gradient_j[padded_fields(stride)];  // and the pressure
-      load_fields<stride, stride>(gradients.data(), 0, index, gradient_j);
+      load_fields<stride, stride>(gradients.data(), 0, begins, gradient_j);
       Simd<Real> gradient[Dim];
       for (int a = 0; a < Dim; ++a) gradient[a] = hn::Add(hn::Set(d, gradient_i[a]), gradient_j[a]);
       const auto p_ji = hn::Sub(gradient_j[Dim], hn::Set(d, gradient_i[Dim]));

@@ -51,9 +51,9 @@ SightedSums<Dim, Real> sighted_sums(const PairFields<Dim, Real>& fields, const P
   constexpr int position_at = Dim * Dim;
   const Real* record_i = fields.record(i);
   const auto sight_i = hn::Set(d, static_cast<Real>(sight_of_thinner) / record_i[Fields::rest_viscosity_at]);
-  const auto add_pairs = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-    const Neighbours<Dim, Real> pair(record_i, fields.records.data(), index);
-    const auto eta_j = load_field<Dim, Real, Fields::rest_viscosity_at>(fields, index);
+  const auto add_pairs = [&](const std::int32_t* begins, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+    const Neighbours<Dim, Real> pair(record_i, fields.records.data(), begins);
+    const auto eta_j = load_field<Dim, Real, Fields::rest_viscosity_at>(fields, begins);
     const auto sight = hn::Min(hn::Set(d, Real(1)), hn::Mul(sight_i, eta_j));
     const auto volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(dot<Dim, Real>(pair.x_ij, pair.x_ij)));
     const auto weight = hn::Mul(volume_f, sight);
@@ -77,11 +77,11 @@ struct WeighedPairs {
   Simd<Real> xsph_weight;       ///< m_j (1/rho_i + 1/rho_j) W_ij
 };
 
-/// Those at `index` of a particle whose record is `record_i`.
+/// Those whose records begin at `begins`, of a particle whose record is `record_i`.
 template <typename PairKernel, int Dim, typename Real, bool with_xsph>
 HWY_INLINE void weigh_pairs(const PairKernel& kernel, const Real* record_i, const Real* records,
-                            const std::int32_t* index, WeighedPairs<Dim, Real>& out) {
-  const Neighbours<Dim, Real> pair(record_i, records, index);
+                            const std::int32_t* begins, WeighedPairs<Dim, Real>& out) {
+  const Neighbours<Dim, Real> pair(record_i, records, begins);
   const auto r2 = dot<Dim, Real>(pair.x_ij, pair.x_ij);
   out.volume_f = hn::Mul(pair.volume, kernel.gradient_over_r(r2));
   out.mass_f = hn::Mul(pair.density, out.volume_f);
@@ -170,29 +170,29 @@ void rate_sums(const PairFields<Dim, Real>& fields, const NeighbourLists& lists,
     for (std::size_t k = 0; k < row.neighbours.size(); k += lanes<Real>)
       weigh_pairs<PairKernel, Dim, Real, with_xsph>(kernel, record_i, records, row.padded.data() + k,
                                                     weighed[k / lanes<Real>]);
-    const auto weighed_at = [&](const std::int32_t* index) HWY_ATTR -> const WeighedPairs<Dim, Real>& {
-      return weighed[static_cast<std::size_t>(index - row.padded.data()) / lanes<Real>];
+    const auto weighed_at = [&](const std::int32_t* begins) HWY_ATTR -> const WeighedPairs<Dim, Real>& {
+      return weighed[static_cast<std::size_t>(begins - row.padded.data()) / lanes<Real>];
     };
-    const auto add_flow = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const WeighedPairs<Dim, Real>& pair = weighed_at(index);
+    const auto add_flow = [&](const std::int32_t* begins, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const WeighedPairs<Dim, Real>& pair = weighed_at(begins);
       sum[At::density_rate] = hn::MulAdd(pair.mass_f, dot<Dim, Real>(pair.v_ij, pair.x_ij), sum[At::density_rate]);
       if constexpr (with_stress) add_velocity_moment<Dim, Real>(pair, pair.volume_f, sum + At::velocity_moment);
       if constexpr (with_xsph)
         for (int a = 0; a < Dim; ++a)
           sum[At::xsph + a] = hn::NegMulAdd(pair.v_ij[a], pair.xsph_weight, sum[At::xsph + a]);
     };
-    const auto add_places = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
-      const WeighedPairs<Dim, Real>& pair = weighed_at(index);
+    const auto add_places = [&](const std::int32_t* begins, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+      const WeighedPairs<Dim, Real>& pair = weighed_at(begins);
       add_position_moment<Dim, Real>(pair, pair.volume_f, sum);
       if constexpr (with_sight && !with_heat)
-        thinnest = hn::Min(thinnest, load_field<Dim, Real, Fields::rest_viscosity_at>(fields, index));
+        thinnest = hn::Min(thinnest, load_field<Dim, Real, Fields::rest_viscosity_at>(fields, begins));
     };
-    const auto add_heats = [&](const std::int32_t* index, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
+    const auto add_heats = [&](const std::int32_t* begins, Simd<Real>* sum) HWY_ATTR __attribute__((always_inline)) {
       constexpr int n_heat = with_sight ? Fields::rest_viscosity_at + 1 - Fields::heat_at : Fields::n_heat;
       Simd<Real> heat_j[padded_fields(n_heat)];
-      load_fields<Fields::record_size, n_heat>(records, Fields::heat_at, index, heat_j);
+      load_fields<Fields::record_size, n_heat>(records, Fields::heat_at, begins, heat_j);
       if constexpr (with_sight) thinnest = hn::Min(thinnest, heat_j[Fields::rest_viscosity_at - Fields::heat_at]);
-      add_heat<Dim, Real, heat_terms>(weighed_at(index), record_i, heat_j, sum);
+      add_heat<Dim, Real, heat_terms>(weighed_at(begins), record_i, heat_j, sum);
     };
     Real total[At::n_sums];
     const auto flow = sum_group<At::n_flow>(add_flow);
