@@ -17,7 +17,7 @@ namespace {
 using Fields = PairFields<3, float>;
 
 constexpr double smoothing_length = 1.3;  // spacings
-constexpr double skin = 0.17;             // smoothing lengths: as the step bench's solver chooses on average
+constexpr double skin = 0.17;             // smoothing lengths: of particles that flow
 
 // Additions, multiplications, comparisons, divisions and roots of one pair in the loops, the reduction at a row's end
 // left out.
