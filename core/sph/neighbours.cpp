@@ -383,7 +383,8 @@ void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, do
 
 std::size_t NeighbourLists::n_bytes() const {
   std::size_t n = places.size() * sizeof(places[0]) + blocks.size() * sizeof(Block) + names.size() * sizeof(names[0]);
-  for (const Block& block : blocks) n += block.run_begin.size() * sizeof(block.run_begin[0]) + block.bytes.size();
+  for (const Block& block : blocks)
+    n += block.run_begin.capacity() * sizeof(block.run_begin[0]) + block.bytes.capacity();
   return n;
 }
 

@@ -49,7 +49,7 @@ struct NeighbourLists {
   int row_multiple = 1;  ///< a power of two, up to max_multiple
 
   std::size_t size() const { return places.size(); }
-  std::size_t n_bytes() const;
+  std::size_t n_bytes() const;  ///< set aside, what rows may grow to included
   /// Entries that a buffer for any row needs.
   std::size_t room() const { return longest + static_cast<std::size_t>(row_multiple) + step; }
 
@@ -118,7 +118,8 @@ std::pmr::vector<std::int32_t> compute_cell_order(std::span<const Vec<Dim>> posi
                                                   double cell_size,
                                                   std::pmr::memory_resource* memory = std::pmr::get_default_resource());
 
-/// All pairs with |x_ij| < radius. `position` must be in the order of compute_cell_order with cell_size >= radius.
+/// All pairs with |x_ij| < radius, and none that is farther by more than two millionths of `cell_size`: distances are
+/// compared in single precision. `position` must be in the order of compute_cell_order with cell_size >= radius.
 template <int Dim>
 void build_neighbour_lists(std::span<const Vec<Dim>> position, double radius, double cell_size, int row_multiple,
                            NeighbourLists& lists);

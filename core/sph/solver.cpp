@@ -94,10 +94,11 @@ void Solver<Dim, Real>::resize_derived() {
   if (!colliders_.empty()) clearance_.resize(n, 0.0F);
   if (terms_.exchange) free_surface_area_.resize(n, 0.0);
   // Of one material, without heat, all particles are alike.
-  if (!terms_.pair.stress || !(terms_.pair.has_heat() || materials_.size() > 1)) return;
-  const std::size_t before = rest_viscosity_.size();
-  rest_viscosity_.resize(n);
-  for (std::size_t i = before; i < n; ++i) keep_rest_viscosity(i, flow_curve_of(i));
+  if (terms_.pair.stress && (terms_.pair.has_heat() || materials_.size() > 1)) {
+    const std::size_t before = rest_viscosity_.size();
+    rest_viscosity_.resize(n);
+    for (std::size_t i = before; i < n; ++i) keep_rest_viscosity(i, flow_curve_of(i));
+  }
 }
 
 // ------------------------------------------------------------------------------------------------------- the algorithm
